@@ -1,0 +1,380 @@
+//! Document, results, jobs and notices, changed only by commands and finished jobs.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use crate::calibrate::{Method, MethodResult, solve_all};
+use crate::session::{self, History, Measured, Session, SessionError, ball_problem, measure};
+use crate::watch::Cancelled;
+
+use super::Command;
+use super::jobs::{JobOutcome, Slot, Wake};
+
+/// The open session.
+#[derive(Clone, Debug)]
+pub struct Document {
+    /// The session as it is now.
+    pub session: Arc<Session>,
+    /// Its file; `None` for a sample or a new session.
+    pub path: Option<PathBuf>,
+    /// Counts the edits; results know the revision they belong to.
+    pub revision: u64,
+    /// What can be undone.
+    pub history: History,
+    saved: Arc<Session>,
+}
+
+impl Document {
+    fn new(session: Session, path: Option<PathBuf>, revision: u64) -> Self {
+        let session = Arc::new(session);
+        Self {
+            saved: Arc::clone(&session),
+            session,
+            path,
+            revision,
+            history: History::default(),
+        }
+    }
+
+    /// Whether there are edits that no file holds.
+    #[must_use]
+    pub fn is_unsaved(&self) -> bool {
+        !Arc::ptr_eq(&self.session, &self.saved) && self.session != self.saved
+    }
+
+    /// The file's name, or the session's.
+    #[must_use]
+    pub fn title(&self) -> String {
+        self.path
+            .as_deref()
+            .and_then(Path::file_name)
+            .map_or_else(|| self.session.name.clone(), |name| name.to_string_lossy().into_owned())
+    }
+}
+
+/// What the methods made of a revision of the document.
+#[derive(Clone, Debug)]
+pub struct Results {
+    /// The revision they belong to.
+    pub revision: u64,
+    /// The arcs of all captures.
+    pub measured: Arc<Measured>,
+    /// One entry a method, in the order of [`Method::ALL`]; empty if the session is none for the ball.
+    pub methods: Vec<MethodResult>,
+    /// Why there are no methods, in words.
+    pub refusal: Option<String>,
+    /// How long it took.
+    pub elapsed: Duration,
+}
+
+impl Results {
+    /// The result of one method.
+    #[must_use]
+    pub fn method(&self, method: Method) -> Option<&MethodResult> {
+        self.methods.iter().find(|result| result.method == method)
+    }
+}
+
+/// How serious a notice is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoticeKind {
+    /// Something was done.
+    Done,
+    /// Something could not be done.
+    Error,
+}
+
+/// Something to tell the user, shown until dismissed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Notice {
+    /// For [`Command::DismissNotice`].
+    pub id: u64,
+    /// How serious.
+    pub kind: NoticeKind,
+    /// The sentence.
+    pub message: String,
+}
+
+/// Progress of the solver.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// Parts done.
+    pub done: usize,
+    /// Parts in all; 0 while unknown.
+    pub total: usize,
+}
+
+/// The state behind the window.
+pub struct Workbench {
+    wake: Wake,
+    document: Option<Document>,
+    results: Option<Results>,
+    notices: Vec<Notice>,
+    last_revision: u64,
+    last_notice_id: u64,
+    loading: Slot<(Option<PathBuf>, Result<Session, SessionError>)>,
+    saving: Slot<(PathBuf, Arc<Session>, Result<(), SessionError>)>,
+    save_queue: Vec<PathBuf>,
+    solving: Slot<Result<Results, Cancelled>>,
+}
+
+impl Workbench {
+    /// An empty workbench; `wake` is called from worker threads when there is news for [`Self::poll`].
+    #[must_use]
+    pub fn new(wake: Wake) -> Self {
+        Self {
+            wake,
+            document: None,
+            results: None,
+            notices: Vec::new(),
+            last_revision: 0,
+            last_notice_id: 0,
+            loading: Slot::default(),
+            saving: Slot::default(),
+            save_queue: Vec::new(),
+            solving: Slot::default(),
+        }
+    }
+
+    /// The open session.
+    #[must_use]
+    pub const fn document(&self) -> Option<&Document> {
+        self.document.as_ref()
+    }
+
+    /// The last results; see [`Self::results_are_current`].
+    #[must_use]
+    pub const fn results(&self) -> Option<&Results> {
+        self.results.as_ref()
+    }
+
+    /// Whether the results belong to the document as it is now.
+    #[must_use]
+    pub fn results_are_current(&self) -> bool {
+        match (&self.document, &self.results) {
+            (Some(document), Some(results)) => document.revision == results.revision,
+            _ => false,
+        }
+    }
+
+    /// Notices not yet dismissed, oldest first.
+    #[must_use]
+    pub fn notices(&self) -> &[Notice] {
+        &self.notices
+    }
+
+    /// Progress of the solver while it runs.
+    #[must_use]
+    pub fn solve_progress(&self) -> Option<Progress> {
+        self.solving.progress().map(|(done, total)| Progress { done, total })
+    }
+
+    /// Whether a file is being read.
+    #[must_use]
+    pub const fn is_loading(&self) -> bool {
+        self.loading.is_running()
+    }
+
+    /// Whether any work is under way in the background.
+    #[must_use]
+    pub const fn is_busy(&self) -> bool {
+        self.loading.is_running() || self.saving.is_running() || self.solving.is_running()
+    }
+
+    /// Carries out one command.
+    pub fn apply(&mut self, command: Command) {
+        match command {
+            Command::Open(path) => self.start_loading(path),
+            Command::OpenSample(sample_idx) => self.open_sample(sample_idx),
+            Command::CloseDocument => self.close_document(),
+            Command::Save => self.save(),
+            Command::SaveAs(path) => self.start_saving(path),
+            Command::SetStationEnabled { station_idx, enabled } => {
+                self.edit_station(station_idx, if enabled { "use station" } else { "leave out station" }, |station| {
+                    station.enabled = enabled;
+                });
+            }
+            Command::SetStationSide { station_idx, side } => {
+                self.edit_station(station_idx, "set side of station", |station| station.side = side);
+            }
+            Command::Undo => self.step_history(History::undo),
+            Command::Redo => self.step_history(History::redo),
+            Command::CancelSolve => self.solving.cancel(),
+            Command::DismissNotice(id) => self.notices.retain(|notice| notice.id != id),
+        }
+    }
+
+    /// Takes in the results of finished jobs. Answers whether anything changed.
+    pub fn poll(&mut self) -> bool {
+        let mut changed = false;
+        if let Some(outcome) = self.loading.poll() {
+            changed = true;
+            match outcome {
+                JobOutcome::Done((path, Ok(session))) => self.open_session(session, path),
+                JobOutcome::Done((_, Err(error))) => self.notify(NoticeKind::Error, error.to_string()),
+                broken => self.notify_broken("reading the file", &broken),
+            }
+        }
+        if let Some(outcome) = self.saving.poll() {
+            changed = true;
+            match outcome {
+                JobOutcome::Done((path, saved, Ok(()))) => self.note_saved(path, saved),
+                JobOutcome::Done((_, _, Err(error))) => self.notify(NoticeKind::Error, error.to_string()),
+                broken => self.notify_broken("saving", &broken),
+            }
+            if !self.save_queue.is_empty() {
+                let next = self.save_queue.remove(0);
+                self.start_saving(next);
+            }
+        }
+        if let Some(outcome) = self.solving.poll() {
+            changed = true;
+            match outcome {
+                JobOutcome::Done(Ok(results)) => self.results = Some(results),
+                JobOutcome::Done(Err(Cancelled)) => {}
+                broken => self.notify_broken("solving", &broken),
+            }
+        }
+        changed
+    }
+
+    /// Puts a session on the bench and solves it.
+    pub fn open_session(&mut self, session: Session, path: Option<PathBuf>) {
+        self.last_revision += 1;
+        self.document = Some(Document::new(session, path, self.last_revision));
+        self.results = None;
+        self.start_solving();
+    }
+
+    fn start_loading(&mut self, path: PathBuf) {
+        self.loading.start("load session", &self.wake, move |_| {
+            let session = session::load(&path);
+            (Some(path), session)
+        });
+    }
+
+    fn open_sample(&mut self, sample_idx: usize) {
+        let Some(sample) = session::samples::ALL.get(sample_idx) else {
+            self.notify(NoticeKind::Error, format!("there is no sample session number {sample_idx}"));
+            return;
+        };
+        self.loading.start("load sample", &self.wake, move |_| {
+            (None, session::parse(sample.json.as_bytes(), sample.file_name))
+        });
+    }
+
+    fn close_document(&mut self) {
+        self.solving.cancel();
+        self.document = None;
+        self.results = None;
+    }
+
+    fn save(&mut self) {
+        match self.document.as_ref().map(|document| document.path.clone()) {
+            Some(Some(path)) => self.start_saving(path),
+            Some(None) => self.notify(
+                NoticeKind::Error,
+                "this session has no file yet: choose one with \"Save as…\"".to_owned(),
+            ),
+            None => self.notify(NoticeKind::Error, "there is no open session to save".to_owned()),
+        }
+    }
+
+    fn start_saving(&mut self, path: PathBuf) {
+        if self.saving.is_running() {
+            // A save is never dropped; the next one starts when this one has ended.
+            self.save_queue.push(path);
+            return;
+        }
+        let Some(document) = &self.document else {
+            self.notify(NoticeKind::Error, "there is no open session to save".to_owned());
+            return;
+        };
+        let snapshot = Arc::clone(&document.session);
+        self.saving.start("save session", &self.wake, move |_| {
+            let outcome = session::save(&snapshot, &path);
+            (path, snapshot, outcome)
+        });
+    }
+
+    fn note_saved(&mut self, path: PathBuf, saved: Arc<Session>) {
+        self.notify(NoticeKind::Done, format!("saved to {}", path.display()));
+        if let Some(document) = &mut self.document {
+            document.saved = saved;
+            document.path = Some(path);
+        }
+    }
+
+    fn edit_station(&mut self, station_idx: usize, label: &str, edit: impl FnOnce(&mut session::Station)) {
+        let Some(document) = &mut self.document else { return };
+        let mut changed = Session::clone(&document.session);
+        let Some(station) = changed.stations.get_mut(station_idx) else { return };
+        edit(station);
+        if changed == *document.session {
+            return;
+        }
+        let label = format!("{label} {}", changed.stations[station_idx].label);
+        let before = std::mem::replace(&mut document.session, Arc::new(changed));
+        document.history.record(label, before);
+        self.touch();
+    }
+
+    fn step_history(&mut self, step: impl FnOnce(&mut History, Arc<Session>) -> Option<Arc<Session>>) {
+        let Some(document) = &mut self.document else { return };
+        if let Some(session) = step(&mut document.history, Arc::clone(&document.session)) {
+            document.session = session;
+            self.touch();
+        }
+    }
+
+    /// The document has changed: a new revision, to be solved.
+    fn touch(&mut self) {
+        self.last_revision += 1;
+        if let Some(document) = &mut self.document {
+            document.revision = self.last_revision;
+        }
+        self.start_solving();
+    }
+
+    fn start_solving(&mut self) {
+        let Some(document) = &self.document else { return };
+        let session = Arc::clone(&document.session);
+        let revision = document.revision;
+        let previous = self.results.as_ref().map(|results| Arc::clone(&results.measured));
+        self.solving.start("solve", &self.wake, move |watch| {
+            let start = Instant::now();
+            let measured = Arc::new(measure(&session, previous.as_deref(), watch)?);
+            let (methods, refusal) = match ball_problem(&session, &measured) {
+                Ok(problem) => (solve_all(&problem, &Method::ALL, watch)?, None),
+                Err(refusal) => (Vec::new(), Some(refusal.to_string())),
+            };
+            Ok(Results {
+                revision,
+                measured,
+                methods,
+                refusal,
+                elapsed: start.elapsed(),
+            })
+        });
+    }
+
+    fn notify(&mut self, kind: NoticeKind, message: String) {
+        self.last_notice_id += 1;
+        self.notices.push(Notice {
+            id: self.last_notice_id,
+            kind,
+            message,
+        });
+    }
+
+    fn notify_broken<T>(&mut self, what: &str, outcome: &JobOutcome<T>) {
+        let message = match outcome {
+            JobOutcome::NotStarted(error) => format!("{what} could not start: {error}"),
+            JobOutcome::Done(_) | JobOutcome::Panicked => {
+                format!("{what} broke down; this is a bug in Handeye. Your session is unchanged")
+            }
+        };
+        self.notify(NoticeKind::Error, message);
+    }
+}

@@ -1,0 +1,67 @@
+//! Why a method computed nothing.
+
+use thiserror::Error;
+
+/// Why a method computed nothing. Everything short of that is a [`super::Warning`] in the solution.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum SolveError {
+    /// Nine unknowns need more than three points.
+    #[error(
+        "found {found} usable station{plural}; at least {needed} with different orientations are needed",
+        plural = if *found == 1 { "" } else { "s" }
+    )]
+    TooFewStations {
+        /// Stations that the method can use.
+        found: usize,
+        /// The least number that will do.
+        needed: usize,
+    },
+    /// A largest-arc method without steps to look at.
+    #[error(
+        "found {found} station{plural} with a sweep, and at least {needed} are needed: \
+         record each station with steps along the laser's normal, {steps} profiles or more",
+        plural = if *found == 1 { "" } else { "s" }
+    )]
+    TooFewSweeps {
+        /// Stations with a usable sweep.
+        found: usize,
+        /// The least number that will do.
+        needed: usize,
+        /// Profiles that make a sweep.
+        steps: usize,
+    },
+    /// All orientations are the same, so a shift of the sensor cannot be told from a shift of the ball.
+    #[error(
+        "the orientations differ by {span_deg:.2}° at most: with translations only, the sensor's place on the flange \
+         cannot be found. Tilt and turn the tool between stations"
+    )]
+    NoRotation {
+        /// Largest rotation between two stations, degrees.
+        span_deg: f64,
+    },
+    /// All rotations share an axis; along it, sensor and ball shift together unseen.
+    #[error(
+        "all rotations are about one axis, ({axis_x:.2}, {axis_y:.2}, {axis_z:.2}) in the flange: the sensor's place along \
+         it cannot be found. Add stations that are tilted about another axis"
+    )]
+    RotationsAboutOneAxis {
+        /// The axis in the flange frame, x.
+        axis_x: f64,
+        /// y.
+        axis_y: f64,
+        /// z.
+        axis_z: f64,
+    },
+    /// The readings leave a combination of the unknowns free.
+    #[error(
+        "the stations leave at least one direction free (condition number {condition:.1e}): add stations that are tilted \
+         differently, and with the ball elsewhere in the profile"
+    )]
+    Undetermined {
+        /// Condition number of the scaled normal equations.
+        condition: f64,
+    },
+    /// No start led to a finite solution.
+    #[error("the solver found no finite solution; check poses and units")]
+    Diverged,
+}

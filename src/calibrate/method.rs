@@ -1,0 +1,86 @@
+//! The one list of methods that the command line, the window and the tests all read.
+
+use crate::watch::{Cancelled, Watch};
+
+use super::ball;
+use super::{BallProblem, Solution, SolveError};
+
+/// A way to compute `flange_from_sensor`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Method {
+    /// Lin & Mu 2019 §1: one section a station, y = ±√(R² − l²).
+    BallFixedPoint,
+    /// Lin & Mu 2019 §2 as published: step along Y and stop at the first l ≥ R.
+    BallMaxArcStep,
+    /// The same sweep, the whole radius-vs-step curve fitted, with the real pose of every step.
+    BallMaxArc,
+    /// All points of all profiles at once.
+    BallBundle,
+}
+
+impl Method {
+    /// All methods, in the order in which they are shown.
+    pub const ALL: [Self; 4] = [
+        Self::BallFixedPoint,
+        Self::BallMaxArcStep,
+        Self::BallMaxArc,
+        Self::BallBundle,
+    ];
+
+    /// The name in files and on the command line.
+    #[must_use]
+    pub const fn id(self) -> &'static str {
+        match self {
+            Self::BallFixedPoint => "ball-fixed-point",
+            Self::BallMaxArcStep => "ball-max-arc-step",
+            Self::BallMaxArc => "ball-max-arc",
+            Self::BallBundle => "ball-bundle",
+        }
+    }
+
+    /// The method with this name.
+    #[must_use]
+    pub fn by_id(id: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|method| method.id() == id)
+    }
+}
+
+/// What became of one method on one problem.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MethodResult {
+    /// Which method.
+    pub method: Method,
+    /// Its solution, or why nothing could be computed.
+    pub outcome: Result<Solution, SolveError>,
+}
+
+/// Runs one method.
+///
+/// # Errors
+/// [`SolveError`] if nothing can be computed from this problem. A poor result is a solution with warnings.
+pub fn solve(problem: &BallProblem, method: Method) -> Result<Solution, SolveError> {
+    match method {
+        Method::BallFixedPoint => ball::fixed_point::solve(problem),
+        Method::BallMaxArcStep => ball::max_arc_step::solve(problem),
+        Method::BallMaxArc => ball::max_arc::solve(problem),
+        Method::BallBundle => ball::bundle::solve(problem),
+    }
+}
+
+/// Runs the given methods in their order.
+///
+/// # Errors
+/// [`Cancelled`] if `watch` says so between two methods.
+pub fn solve_all(
+    problem: &BallProblem,
+    methods: &[Method],
+    watch: &mut dyn Watch,
+) -> Result<Vec<MethodResult>, Cancelled> {
+    let mut results = Vec::with_capacity(methods.len());
+    for &method in methods {
+        watch.report(results.len(), methods.len())?;
+        let outcome = solve(problem, method);
+        results.push(MethodResult { method, outcome });
+    }
+    Ok(results)
+}

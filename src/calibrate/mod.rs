@@ -1,0 +1,28 @@
+//! Hand-eye methods: what they are given, what they compute, and how good it is.
+//!
+//! Data flows `Problem` → [`solve`] → [`Solution`]. All methods for the ball end in the same form: every capture says
+//! something about where the ball's centre lies in the sensor frame (a [`observation::CentreObservation`]), and one
+//! small solver on SE(3) × R³ finds the sensor on the flange and the ball in the base from that.
+//!
+//! For a sensor fixed beside the robot ([`Mount::Fixed`]) the same problem is posed with every pose inverted: read
+//! "base" where a name says flange, and "flange" where it says base.
+
+pub mod ball;
+pub mod error;
+pub mod method;
+pub mod observation;
+pub mod problem;
+pub mod rotation_start;
+pub mod solution;
+pub mod solver;
+pub mod uncertainty;
+pub mod validation;
+pub mod verdict;
+pub mod warning;
+
+pub use error::SolveError;
+pub use method::{Method, MethodResult, solve, solve_all};
+pub use problem::{BallProblem, Capture, Mount, Noise, Reading, Side, SideChoice, Station};
+pub use solution::{RmsMax, Solution, StationSolution, Sweep, SweepPoint, Uncertainty};
+pub use verdict::{Verdict, VerdictReason};
+pub use warning::Warning;

@@ -1,0 +1,122 @@
+//! What a method computes, and how good it is.
+
+use nalgebra::Matrix6;
+
+use crate::geometry::{Flange, Sensor, Transform, Vec3};
+
+use super::{Method, Mount, Side, Warning};
+
+/// Root mean square and maximum of some distances, mm.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RmsMax {
+    /// Root mean square, mm.
+    pub rms_mm: f64,
+    /// Maximum, mm.
+    pub max_mm: f64,
+}
+
+/// How well the result is known, one standard deviation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Uncertainty {
+    /// Covariance of (rotation, translation): rotation in rad as a right perturbation (about the sensor's axes),
+    /// translation in mm along the flange's axes.
+    pub covariance: Matrix6<f64>,
+    /// Of the translation along the flange's axes, mm.
+    pub translation_std_mm: Vec3,
+    /// Of the rotation about the sensor's axes, rad.
+    pub rotation_std_rad: Vec3,
+    /// Of a point at `reference_point_in_sensor_mm`, in three dimensions (root of the trace), mm: the headline.
+    pub workspace_point_std_mm: f64,
+    /// The point that the headline speaks of, mm.
+    pub reference_point_in_sensor_mm: Vec3,
+}
+
+/// One step of a sweep as the curve shows it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SweepPoint {
+    /// Index of the capture in its station.
+    pub capture_idx: usize,
+    /// Travel from the first capture along the laser's normal, mm.
+    pub travel_mm: f64,
+    /// Radius of the section, mm.
+    pub section_radius_mm: f64,
+    /// Its standard deviation, mm.
+    pub section_radius_std_mm: f64,
+    /// Measured minus fitted radius, mm.
+    pub residual_mm: f64,
+}
+
+/// The radius-vs-step curve of one station, evaluated both ways.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sweep {
+    /// The steps with a usable arc, in order of capture.
+    pub points: Vec<SweepPoint>,
+    /// Travel at which the arc is largest: the peak of l² = R² − (travel − peak)², mm.
+    pub peak_mm: f64,
+    /// Its standard deviation, mm.
+    pub peak_std_mm: f64,
+    /// The travel where the published rule stops, mm.
+    pub published_stop_mm: f64,
+    /// The capture at which it stops.
+    pub published_stop_idx: usize,
+    /// How far the published rule may be off here: about √(2 R σ_l) and half a step, mm.
+    pub published_stop_std_mm: f64,
+    /// Angle between the travel and the laser's normal, rad.
+    pub travel_off_normal_rad: f64,
+    /// Whether the steps reach both sides of the peak.
+    pub covers_peak: bool,
+}
+
+/// What a method says about one station.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StationSolution {
+    /// The caller's index, as in [`super::Station::idx`].
+    pub station_idx: usize,
+    /// The user's name for it.
+    pub label: String,
+    /// Side of the ball's centre.
+    pub side: Side,
+    /// Cost of the best solution with the other side, over the cost of this one; `None` where the side was not in doubt.
+    pub side_cost_ratio: Option<f64>,
+    /// The ball's centre in the sensor frame of the first capture, mm.
+    pub ball_in_sensor_mm: Vec3,
+    /// Standard deviation of its coordinates from the profile alone, mm.
+    pub ball_in_sensor_std_mm: Option<Vec3>,
+    /// The same point through the calibration, in the base, mm.
+    pub ball_in_base_mm: Vec3,
+    /// `ball_in_base_mm` minus that of the first station used, mm.
+    pub error_from_first_mm: Vec3,
+    /// `ball_in_base_mm` minus the mean over the stations used, mm.
+    pub error_from_mean_mm: Vec3,
+    /// Distance between this station's ball and the ball of the solution made without it, mm.
+    pub leave_one_out_mm: Option<f64>,
+    /// The evaluated sweep, for the largest-arc methods.
+    pub sweep: Option<Sweep>,
+}
+
+/// A calibration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solution {
+    /// The method that made it.
+    pub method: Method,
+    /// Where the sensor is. For [`Mount::Fixed`] read "base" for flange and "flange" for base in the names below.
+    pub mount: Mount,
+    /// The hand-eye calibration.
+    pub flange_from_sensor: Transform<Flange, Sensor>,
+    /// The ball's centre, mm.
+    pub ball_in_base_mm: Vec3,
+    /// Distances of the stations' balls from `ball_in_base_mm`, in sample.
+    pub scatter: RmsMax,
+    /// Distances with each station predicted by the others; `None` where too few stations remain for that.
+    pub leave_one_out: Option<RmsMax>,
+    /// How well the result is known; `None` where nothing is left over to judge by.
+    pub uncertainty: Option<Uncertainty>,
+    /// One entry a station used, in order.
+    pub stations: Vec<StationSolution>,
+    /// Angle of the largest rotation between two poses, rad.
+    pub rotation_span_rad: f64,
+    /// What the user should know.
+    pub warnings: Vec<Warning>,
+    /// Iterations of the last solve.
+    pub num_iterations: usize,
+}

@@ -1,0 +1,131 @@
+//! What a user should know about a result: facts here, wording in [`crate::text`].
+
+use crate::fit::ArcRefusal;
+
+/// Something about a result that the user should know. Sentence and remedy come from [`crate::text`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum Warning {
+    /// Hardly more equations than unknowns.
+    FewStations {
+        /// Stations used.
+        num_stations: usize,
+        /// A number that makes the figures trustworthy.
+        recommended: usize,
+    },
+    /// The orientations are alike.
+    LittleRotation {
+        /// Largest rotation between two stations, degrees.
+        span_deg: f64,
+        /// A span that does, degrees.
+        recommended_deg: f64,
+    },
+    /// The rotations are almost about one axis.
+    NearlyOneAxis {
+        /// How much smaller the rotations about the weakest axis are than those about the strongest.
+        ratio: f64,
+        /// The weak axis in the flange frame.
+        weak_axis_in_flange: [f64; 3],
+    },
+    /// The other side of the ball fits about as well.
+    SideAmbiguous {
+        /// Station.
+        label: String,
+        /// Cost with the other side over cost with this.
+        ratio: f64,
+    },
+    /// The sections are so near the largest that y is hardly measured.
+    BlindInY {
+        /// Stations concerned.
+        labels: Vec<String>,
+        /// Largest σ of y, mm.
+        std_y_mm: f64,
+        /// Median σ across and along the range, mm.
+        std_xz_mm: f64,
+    },
+    /// A section larger than the ball.
+    ArcLargerThanBall {
+        /// Station.
+        label: String,
+        /// Capture, from 0.
+        capture_idx: usize,
+        /// Section radius, mm.
+        section_radius_mm: f64,
+        /// Ball radius, mm.
+        ball_radius_mm: f64,
+    },
+    /// A profile without a usable arc was left out.
+    CaptureRefused {
+        /// Station.
+        label: String,
+        /// Capture, from 0.
+        capture_idx: usize,
+        /// Why.
+        reason: ArcRefusal,
+    },
+    /// A whole station was left out.
+    StationSkipped {
+        /// Station.
+        label: String,
+        /// Usable captures found.
+        found: usize,
+        /// Usable captures needed.
+        needed: usize,
+    },
+    /// The robot's travel is not along the laser's normal.
+    TravelOffNormal {
+        /// Station with the largest angle.
+        label: String,
+        /// The angle, degrees.
+        angle_deg: f64,
+    },
+    /// The steps end before the largest arc.
+    PeakNotCovered {
+        /// Station.
+        label: String,
+        /// How far beyond the last step the peak lies, mm.
+        beyond_mm: f64,
+    },
+    /// The recorded poses did not move as commanded.
+    StepDiffersFromPose {
+        /// Station.
+        label: String,
+        /// Largest difference between commanded and real travel, mm.
+        difference_mm: f64,
+    },
+    /// One station disagrees with all others.
+    StationStandsOut {
+        /// Station.
+        label: String,
+        /// Its left-out error, mm.
+        error_mm: f64,
+        /// The median of the others, mm.
+        typical_mm: f64,
+    },
+    /// The solver stopped before it settled.
+    NotConverged {
+        /// Iterations made.
+        num_iterations: usize,
+    },
+}
+
+impl Warning {
+    /// The code that programs rely on.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        match self {
+            Self::FewStations { .. } => "few-stations",
+            Self::LittleRotation { .. } => "little-rotation",
+            Self::NearlyOneAxis { .. } => "nearly-one-axis",
+            Self::SideAmbiguous { .. } => "side-ambiguous",
+            Self::BlindInY { .. } => "blind-in-y",
+            Self::ArcLargerThanBall { .. } => "arc-larger-than-ball",
+            Self::CaptureRefused { .. } => "capture-refused",
+            Self::StationSkipped { .. } => "station-skipped",
+            Self::TravelOffNormal { .. } => "travel-off-normal",
+            Self::PeakNotCovered { .. } => "peak-not-covered",
+            Self::StepDiffersFromPose { .. } => "step-differs-from-pose",
+            Self::StationStandsOut { .. } => "station-stands-out",
+            Self::NotConverged { .. } => "not-converged",
+        }
+    }
+}

@@ -1,0 +1,16 @@
+//! Fits of circles to profile points, and the extraction of the ball's arc from a real profile.
+//!
+//! Everything here works in the laser plane: points (x, z) in mm, z along the range axis, whichever way it points.
+//! This floor is pure; the random search in [`arc`] is seeded, so the same profile gives the same bits.
+
+pub mod algebraic;
+pub mod arc;
+pub mod circle;
+pub mod error;
+pub mod geometric;
+pub mod ransac;
+pub mod robust;
+
+pub use arc::{ArcFit, ArcOptions, PointClass, extract_arc};
+pub use circle::{Circle, CircleFit, CircleMethod};
+pub use error::{ArcRefusal, FitError};

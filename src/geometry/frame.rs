@@ -1,0 +1,33 @@
+//! The coordinate frames, as types, so that a transform's type says what it maps.
+
+use std::fmt::Debug;
+
+/// A coordinate frame that a [`Transform`](super::Transform) maps from or to.
+pub trait Frame: Copy + Debug + PartialEq + Send + Sync + 'static {
+    /// The frame's name as used in files and in the window.
+    const NAME: &'static str;
+}
+
+/// The robot's base.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Base;
+
+/// The frame whose pose the controller reports.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Flange;
+
+/// The profiler: laser plane `y = 0`, `x` across the line, `z` along the range axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sensor;
+
+impl Frame for Base {
+    const NAME: &'static str = "base";
+}
+
+impl Frame for Flange {
+    const NAME: &'static str = "flange";
+}
+
+impl Frame for Sensor {
+    const NAME: &'static str = "sensor";
+}

@@ -1,0 +1,33 @@
+//! Handeye: a workbench for the hand-eye calibration of robot-mounted laser profilers.
+//!
+//! # Map
+//! Data flows one way: file → profile → fit → method → result → panel. A module names only floors below its own;
+//! `tests/architecture.rs` checks that.
+//!
+//! | floor | module | holds |
+//! | --- | --- | --- |
+//! | 7 | `main.rs` | arguments, then the window or a command |
+//! | 6 | [`ui`], [`cli`] | egui panels (the only code that names egui) · the commands without a window |
+//! | 5 | [`app`] | the workbench: document, history, results, jobs, notices |
+//! | 4 | [`report`], [`simulate`], [`text`] | result files and tables · simulated sessions · wording |
+//! | 3 | [`session`] | the document: model, file format, checks, history, measuring |
+//! | 2 | [`calibrate`] | hand-eye methods, least squares on SE(3), uncertainty, validation |
+//! | 1 | [`fit`] | circle fits and the extraction of arcs |
+//! | 0 | [`geometry`], [`watch`] | frames, rotations, conventions, profile, statistics · progress and cancel |
+//!
+//! # Invariants
+//! - `geometry`, `fit` and `calibrate` are pure: no I/O, threads, clock or unseeded randomness. Same input, same bits.
+//! - Every transform is named `dst_from_src`. Millimetres and radians inside; degrees only at the edges, in the name.
+//! - A poor result is not an error: it is a solution with warnings. An error means that nothing could be computed.
+
+pub mod app;
+pub mod calibrate;
+pub mod cli;
+pub mod fit;
+pub mod geometry;
+pub mod report;
+pub mod session;
+pub mod simulate;
+pub mod text;
+pub mod ui;
+pub mod watch;

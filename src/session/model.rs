@@ -1,0 +1,175 @@
+//! The document: what a session file holds, checked and typed.
+
+use std::sync::Arc;
+
+use serde_json::{Map, Value};
+
+use crate::calibrate::{Mount, SideChoice};
+use crate::geometry::{Base, Flange, PoseConvention, Profile, Sensor as SensorFrame, Transform, Vec3};
+
+/// Fields of a JSON object that we do not know; they survive load and save.
+pub type UnknownFields = Map<String, Value>;
+
+/// The robot as the file describes it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Robot {
+    /// Make and type.
+    pub model: String,
+    /// How its controller writes orientations.
+    pub pose_convention: &'static PoseConvention,
+    /// Standard deviation of a reported coordinate, mm, if known.
+    pub position_std_mm: Option<f64>,
+    /// Standard deviation of a reported orientation, degrees, if known.
+    pub orientation_std_deg: Option<f64>,
+    /// Fields unknown to us.
+    pub unknown: UnknownFields,
+}
+
+impl Default for Robot {
+    fn default() -> Self {
+        Self {
+            model: String::new(),
+            pose_convention: PoseConvention::default_convention(),
+            position_std_mm: None,
+            orientation_std_deg: None,
+            unknown: UnknownFields::new(),
+        }
+    }
+}
+
+/// The profiler as the file describes it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sensor {
+    /// Make and type.
+    pub model: String,
+    /// Standard deviation of a point along the range axis, mm, if known.
+    pub profile_std_mm: Option<f64>,
+    /// The distance for which accuracy is stated, mm.
+    pub reference_distance_mm: Option<f64>,
+    /// Fields unknown to us.
+    pub unknown: UnknownFields,
+}
+
+/// Which edge of the right-angle plate a station saw.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Edge {
+    /// The edge p.
+    P,
+    /// The edge q.
+    Q,
+}
+
+/// What was measured.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Target {
+    /// A ball.
+    Ball {
+        /// Its radius, mm.
+        radius_mm: f64,
+    },
+    /// Two perpendicular edges.
+    RightAnglePlate,
+    /// A tip or pin.
+    Point,
+    /// A recorded sequence of an RGB-D camera in place of stations.
+    Rgbd {
+        /// The sequence's folder, relative to the session file.
+        sequence: String,
+    },
+}
+
+/// What one capture holds.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reading {
+    /// A reading of the laser line.
+    Profile(Arc<Profile>),
+    /// A point in the sensor frame, already reduced, mm.
+    Point(Vec3),
+}
+
+/// One pose of the robot with what was measured there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Capture {
+    /// The pose that the controller reported.
+    pub base_from_flange: Transform<Base, Flange>,
+    /// What was measured.
+    pub reading: Reading,
+    /// The commanded move from the capture before, signed, mm.
+    pub step_mm: Option<f64>,
+    /// Fields unknown to us.
+    pub unknown: UnknownFields,
+}
+
+/// A place of the robot with its captures.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Station {
+    /// The user's name for it, unique in the session.
+    pub label: String,
+    /// Whether it takes part.
+    pub enabled: bool,
+    /// The side of the ball's centre.
+    pub side: SideChoice,
+    /// The edge seen, for the right-angle plate.
+    pub edge: Option<Edge>,
+    /// At least one.
+    pub captures: Vec<Capture>,
+    /// Fields unknown to us.
+    pub unknown: UnknownFields,
+}
+
+/// What a paper printed for this session.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Published {
+    /// Printed ball centres in the base, one a station, mm.
+    pub ball_in_base_mm: Vec<Vec3>,
+    /// Printed error columns, one a station, mm; empty if none were printed.
+    pub error_from_first_mm: Vec<Vec3>,
+    /// The table's title and source.
+    pub caption: String,
+    /// Fields unknown to us.
+    pub unknown: UnknownFields,
+}
+
+/// The truth of a simulated session.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Truth {
+    /// The true calibration. For [`Mount::Fixed`] it is `base_from_sensor`.
+    pub flange_from_sensor: Transform<Flange, SensorFrame>,
+    /// The true ball centre, mm. For [`Mount::Fixed`] it is in the flange.
+    pub ball_in_base_mm: Vec3,
+    /// Fields unknown to us.
+    pub unknown: UnknownFields,
+}
+
+/// A session: the one document that the program edits, saves and solves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Session {
+    /// Its name.
+    pub name: String,
+    /// The user's notes.
+    pub notes: String,
+    /// The robot.
+    pub robot: Robot,
+    /// The profiler.
+    pub sensor: Sensor,
+    /// What was measured.
+    pub target: Target,
+    /// Where the sensor is.
+    pub mount: Mount,
+    /// The stations in the order of the file.
+    pub stations: Vec<Station>,
+    /// What a paper printed.
+    pub published: Option<Published>,
+    /// The truth, for simulated sessions.
+    pub truth: Option<Truth>,
+    /// Fields unknown to us.
+    pub unknown: UnknownFields,
+}
+
+impl Session {
+    /// Number of captures over all stations.
+    #[must_use]
+    pub fn num_captures(&self) -> usize {
+        self.stations.iter().map(|station| station.captures.len()).sum()
+    }
+}
