@@ -129,3 +129,19 @@ impl Warning {
         }
     }
 }
+
+impl Warning {
+    /// Whether a result with this warning is never called good, however small its figures.
+    #[must_use]
+    pub const fn casts_doubt(&self) -> bool {
+        matches!(
+            self,
+            Self::FewStations { .. }
+                | Self::LittleRotation { .. }
+                | Self::NearlyOneAxis { .. }
+                | Self::SideAmbiguous { .. }
+                | Self::StationStandsOut { .. }
+                | Self::NotConverged { .. }
+        )
+    }
+}

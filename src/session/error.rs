@@ -1,0 +1,5 @@
+//! x
+/// x
+#[derive(Clone, Debug, thiserror::Error, PartialEq)]
+#[error("x")]
+pub struct SessionError;

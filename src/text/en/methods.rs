@@ -1,0 +1,56 @@
+//! Names of the methods and verdicts.
+
+use crate::calibrate::{Method, Verdict};
+
+/// The method's name in a table head.
+#[must_use]
+pub const fn method_name(method: Method) -> &'static str {
+    match method {
+        Method::BallFixedPoint => "Fixed point",
+        Method::BallMaxArcStep => "Largest arc, published stop",
+        Method::BallMaxArc => "Largest arc, whole curve",
+        Method::BallBundle => "Bundle of all points",
+    }
+}
+
+/// A few words where space is short.
+#[must_use]
+pub const fn method_short_name(method: Method) -> &'static str {
+    match method {
+        Method::BallFixedPoint => "fixed point",
+        Method::BallMaxArcStep => "published stop",
+        Method::BallMaxArc => "whole curve",
+        Method::BallBundle => "bundle",
+    }
+}
+
+/// What the method does, in one sentence.
+#[must_use]
+pub const fn method_description(method: Method) -> &'static str {
+    match method {
+        Method::BallFixedPoint => "One section a station; the ball's centre is ±√(R² − l²) beside the laser plane (Lin & Mu 2019, eq. 1–2)",
+        Method::BallMaxArcStep => "Steps along Y and stops at the first section with l ≥ R (Lin & Mu 2019, eq. 3)",
+        Method::BallMaxArc => "Fits the whole radius-vs-step curve with the real pose of every step",
+        Method::BallBundle => "All points of all profiles at once: the answer to use",
+    }
+}
+
+/// The verdict in words.
+#[must_use]
+pub const fn verdict_name(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Good => "Good",
+        Verdict::Usable => "Usable",
+        Verdict::NotUsable => "Not usable",
+    }
+}
+
+/// The verdict's shape, so that colour is never alone.
+#[must_use]
+pub const fn verdict_mark(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Good => "✔",
+        Verdict::Usable => "!",
+        Verdict::NotUsable => "✖",
+    }
+}

@@ -1,0 +1,4 @@
+//! English.
+
+pub mod methods;
+pub mod warnings;

@@ -1,0 +1,77 @@
+//! Sentences and remedies of the warnings.
+
+use crate::calibrate::Warning;
+
+/// What is the matter, in one sentence.
+#[must_use]
+pub fn warning_message(warning: &Warning) -> String {
+    match warning {
+        Warning::FewStations { num_stations, recommended } => format!(
+            "Only {num_stations} stations: the figures rest on very little, {recommended} or more make them trustworthy."
+        ),
+        Warning::LittleRotation { span_deg, recommended_deg } => format!(
+            "The orientations differ by {span_deg:.1}° at most; below {recommended_deg:.0}° a small residual says little about the accuracy."
+        ),
+        Warning::NearlyOneAxis { ratio, weak_axis_in_flange: [x, y, z] } => format!(
+            "The rotations are almost about one axis: about ({x:.2}, {y:.2}, {z:.2}) in the flange they are {ratio:.0} times smaller."
+        ),
+        Warning::SideAmbiguous { label, ratio } => format!(
+            "The side of the ball at station {label} is uncertain: the other side costs only {ratio:.1} times as much."
+        ),
+        Warning::BlindInY { labels, std_y_mm, std_xz_mm } => format!(
+            "Station{} {}: the section is so near the largest that y is known to ±{std_y_mm:.3} mm only, against ±{std_xz_mm:.3} mm in x and z.",
+            if labels.len() == 1 { "" } else { "s" },
+            labels.join(", ")
+        ),
+        Warning::ArcLargerThanBall { label, capture_idx, section_radius_mm, ball_radius_mm } => format!(
+            "Station {label}, profile {}: the section radius {section_radius_mm:.3} mm is above the ball's {ball_radius_mm:.3} mm.",
+            capture_idx + 1
+        ),
+        Warning::CaptureRefused { label, capture_idx, reason } => {
+            format!("Station {label}, profile {} is left out: {reason}.", capture_idx + 1)
+        }
+        Warning::StationSkipped { label, found, needed } => format!(
+            "Station {label} is left out: it has {found} usable profile{}, this method needs {needed}.",
+            if *found == 1 { "" } else { "s" }
+        ),
+        Warning::TravelOffNormal { label, angle_deg } => format!(
+            "The robot travels {angle_deg:.1}° off the laser's normal at station {label}; the published method takes the travel for the normal."
+        ),
+        Warning::PeakNotCovered { label, beyond_mm } => format!(
+            "The sweep at station {label} ends {beyond_mm:.2} mm before the largest arc."
+        ),
+        Warning::StepDiffersFromPose { label, difference_mm } => format!(
+            "At station {label} the recorded poses and the commanded steps differ by up to {difference_mm:.3} mm."
+        ),
+        Warning::StationStandsOut { label, error_mm, typical_mm } => format!(
+            "Station {label} disagrees with the others: left out, it is missed by {error_mm:.2} mm, the others by {typical_mm:.2} mm."
+        ),
+        Warning::NotConverged { num_iterations } => {
+            format!("The solver had not settled after {num_iterations} iterations.")
+        }
+    }
+}
+
+/// What to do about it.
+#[must_use]
+pub const fn warning_remedy(warning: &Warning) -> &'static str {
+    match warning {
+        Warning::FewStations { .. } => "Add stations with other orientations.",
+        Warning::LittleRotation { .. } => "Add stations tilted by ±20° or more about two axes.",
+        Warning::NearlyOneAxis { .. } => "Add stations tilted about the weak axis.",
+        Warning::SideAmbiguous { .. } => {
+            "Set the side of this station by hand, or move its line further from the ball's centre."
+        }
+        Warning::BlindInY { .. } => {
+            "Use the whole-curve or the bundle method, or place the line nearer to 0.7 of the radius."
+        }
+        Warning::ArcLargerThanBall { .. } => "Check the ball's radius and the profile's scale.",
+        Warning::CaptureRefused { .. } => "Look at the profile in Arcs; capture it again with the ball in view.",
+        Warning::StationSkipped { .. } => "Record a sweep across the ball at this station.",
+        Warning::TravelOffNormal { .. } => "Let the robot step along the calibrated laser normal; the whole-curve method allows for the angle.",
+        Warning::PeakNotCovered { .. } => "Let the sweep run on until the arc has shrunk again.",
+        Warning::StepDiffersFromPose { .. } => "Use the whole-curve method: it takes the real poses.",
+        Warning::StationStandsOut { .. } => "Check the pose and the profile of this station; un-tick it to see what changes.",
+        Warning::NotConverged { .. } => "Check poses and units.",
+    }
+}
