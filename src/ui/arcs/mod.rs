@@ -1,0 +1,3 @@
+//! Step Arcs.
+
+pub mod panel;

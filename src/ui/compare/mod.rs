@@ -1,0 +1,3 @@
+//! Step Compare.
+
+pub mod panel;
