@@ -3,6 +3,9 @@
 //! Every panel is a function of the shared [`PanelContext`] and a state of its own; it queues commands and changes
 //! nothing itself. A step of the rail is a folder with its panel, the model it draws, and the painting.
 
+pub mod arcs;
+pub mod charts;
+pub mod figures;
 pub mod theme;
 pub mod widgets;
 
