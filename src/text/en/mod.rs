@@ -1,4 +1,5 @@
 //! English.
 
+pub mod arcs;
 pub mod methods;
 pub mod warnings;

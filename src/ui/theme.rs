@@ -1,0 +1,291 @@
+//! The one place for colours, type sizes and distances, so that every panel looks like part of the same instrument.
+//!
+//! Neutral surfaces, one accent for the next action, colour otherwise only for data. Distances lie on a 4 px grid.
+//! Call [`install`] once for a context before anything is drawn: the text helpers use font families it registers.
+
+use std::sync::Arc;
+
+use egui::{Color32, CornerRadius, FontDefinitions, FontFamily, FontId, Margin, RichText, Stroke, TextStyle, Theme, vec2};
+use egui_plot::MarkerShape;
+
+use crate::calibrate::{Method, Verdict};
+
+/// Height of every row of a table or list, points.
+pub const ROW_HEIGHT: f32 = 24.0;
+/// Corner radius of cards, buttons and fields, points.
+pub const RADIUS: u8 = 4;
+/// Distance between cards, and from a card's border to its contents, points.
+pub const GAP: f32 = 12.0;
+/// Size of small text, points.
+pub const SMALL_SIZE: f32 = 11.5;
+/// Size of ordinary text, points.
+pub const BODY_SIZE: f32 = 13.5;
+/// Size of headings, points.
+pub const HEADING_SIZE: f32 = 18.0;
+
+/// Colours of the light theme's accent, for code without a `Ui`; panels take them from [`palette`].
+pub const ACCENT: Color32 = LIGHT.accent;
+/// The light theme's cards.
+pub const SURFACE: Color32 = LIGHT.surface;
+/// The light theme's ground behind the cards.
+pub const CANVAS: Color32 = LIGHT.canvas;
+/// The light theme's hairlines.
+pub const HAIRLINE: Color32 = LIGHT.hairline;
+/// The light theme's text.
+pub const TEXT: Color32 = LIGHT.text;
+/// The light theme's units and labels.
+pub const TEXT_DIM: Color32 = LIGHT.text_dim;
+/// The light theme's good.
+pub const GOOD: Color32 = LIGHT.good;
+/// The light theme's warning.
+pub const WARN: Color32 = LIGHT.warn;
+/// The light theme's bad.
+pub const BAD: Color32 = LIGHT.bad;
+/// Points on the arc: drawn solid.
+pub const INLIER: Color32 = Color32::from_rgb(0x00, 0x72, 0xb2);
+/// Points off the arc: drawn hollow.
+pub const OUTLIER: Color32 = Color32::from_rgb(0xd0, 0x39, 0x2b);
+/// Points elsewhere: drawn faint.
+pub const UNUSED: Color32 = Color32::from_rgb(0xb4, 0xbb, 0xc5);
+
+/// The colours of one theme.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Palette {
+    /// The next action, and what is selected.
+    pub accent: Color32,
+    /// Text on the accent.
+    pub on_accent: Color32,
+    /// Ground of a selected row or rail step.
+    pub selected: Color32,
+    /// Ground of what the pointer is over.
+    pub hovered: Color32,
+    /// Cards and bars.
+    pub surface: Color32,
+    /// The ground behind the cards.
+    pub canvas: Color32,
+    /// Borders and rules.
+    pub hairline: Color32,
+    /// Text.
+    pub text: Color32,
+    /// Units, labels, hints.
+    pub text_dim: Color32,
+    /// Good.
+    pub good: Color32,
+    /// To be looked at.
+    pub warn: Color32,
+    /// Bad.
+    pub bad: Color32,
+}
+
+const LIGHT: Palette = Palette {
+    accent: Color32::from_rgb(0x2f, 0x6f, 0xed),
+    on_accent: Color32::WHITE,
+    selected: Color32::from_rgb(0xe8, 0xf0, 0xfd),
+    hovered: Color32::from_rgb(0xf2, 0xf4, 0xf7),
+    surface: Color32::WHITE,
+    canvas: Color32::from_rgb(0xf4, 0xf6, 0xf8),
+    hairline: Color32::from_rgb(0xe1, 0xe5, 0xea),
+    text: Color32::from_rgb(0x1b, 0x22, 0x2c),
+    text_dim: Color32::from_rgb(0x5f, 0x6b, 0x7a),
+    good: Color32::from_rgb(0x11, 0x7a, 0x48),
+    warn: Color32::from_rgb(0xb3, 0x5c, 0x00),
+    bad: Color32::from_rgb(0xc2, 0x2f, 0x22),
+};
+
+const DARK: Palette = Palette {
+    accent: Color32::from_rgb(0x5b, 0x92, 0xf7),
+    on_accent: Color32::from_rgb(0x0d, 0x13, 0x1c),
+    selected: Color32::from_rgb(0x22, 0x33, 0x50),
+    hovered: Color32::from_rgb(0x2a, 0x31, 0x3b),
+    surface: Color32::from_rgb(0x20, 0x26, 0x2e),
+    canvas: Color32::from_rgb(0x16, 0x1b, 0x21),
+    hairline: Color32::from_rgb(0x38, 0x40, 0x4b),
+    text: Color32::from_rgb(0xe6, 0xea, 0xef),
+    text_dim: Color32::from_rgb(0x9a, 0xa6, 0xb5),
+    good: Color32::from_rgb(0x4f, 0xc4, 0x8a),
+    warn: Color32::from_rgb(0xf0, 0xa0, 0x4b),
+    bad: Color32::from_rgb(0xf2, 0x7a, 0x6d),
+};
+
+/// The colours that suit the visuals in use.
+#[must_use]
+pub const fn palette_of(visuals: &egui::Visuals) -> &'static Palette {
+    if visuals.dark_mode { &DARK } else { &LIGHT }
+}
+
+/// The colours that suit the theme in use.
+#[must_use]
+pub fn palette(ui: &egui::Ui) -> &'static Palette {
+    palette_of(ui.visuals())
+}
+
+/// The colour that a method has everywhere, safe for colour-blind eyes (Okabe–Ito).
+#[must_use]
+pub const fn method_color(method: Method) -> Color32 {
+    match method {
+        Method::BallFixedPoint => Color32::from_rgb(0x00, 0x72, 0xb2),
+        Method::BallMaxArcStep => Color32::from_rgb(0x7f, 0x7f, 0x7f),
+        Method::BallMaxArc => Color32::from_rgb(0xd9, 0x7a, 0x00),
+        Method::BallBundle => Color32::from_rgb(0x00, 0x9e, 0x73),
+    }
+}
+
+/// The marker that a method has in every plot.
+#[must_use]
+pub const fn method_marker(method: Method) -> MarkerShape {
+    match method {
+        Method::BallFixedPoint => MarkerShape::Circle,
+        Method::BallMaxArcStep => MarkerShape::Down,
+        Method::BallMaxArc => MarkerShape::Up,
+        Method::BallBundle => MarkerShape::Square,
+    }
+}
+
+/// The same marker as a character, for table heads.
+#[must_use]
+pub const fn method_symbol(method: Method) -> &'static str {
+    match method {
+        Method::BallFixedPoint => "●",
+        Method::BallMaxArcStep => "▽",
+        Method::BallMaxArc => "▲",
+        Method::BallBundle => "■",
+    }
+}
+
+/// The colour of a verdict on a light ground; the shape from [`crate::text::verdict_mark`] stands beside it.
+#[must_use]
+pub const fn verdict_color(verdict: Verdict) -> Color32 {
+    verdict_color_in(&LIGHT, verdict)
+}
+
+/// The colour of a verdict in a palette.
+#[must_use]
+pub const fn verdict_color_in(palette: &Palette, verdict: Verdict) -> Color32 {
+    match verdict {
+        Verdict::Good => palette.good,
+        Verdict::Usable => palette.warn,
+        Verdict::NotUsable => palette.bad,
+    }
+}
+
+fn strong_family() -> FontFamily {
+    FontFamily::Name("strong".into())
+}
+
+fn number_family() -> FontFamily {
+    FontFamily::Name("number".into())
+}
+
+/// Text in the second weight, for titles of cards and the figures that matter.
+pub fn strong(text: impl Into<String>) -> RichText {
+    RichText::new(text).family(strong_family()).strong()
+}
+
+/// Text in the third size and second weight, for the title of a page or a verdict.
+pub fn heading(text: impl Into<String>) -> RichText {
+    strong(text).size(HEADING_SIZE)
+}
+
+/// Text in the dimmer tone, for labels, units and hints.
+pub fn dim(ui: &egui::Ui, text: impl Into<String>) -> RichText {
+    RichText::new(text).color(palette(ui).text_dim)
+}
+
+/// The font of numbers: all figures are equally wide, so columns line up on the decimal point.
+#[must_use]
+pub fn number_font() -> FontId {
+    FontId::new(NUMBER_SIZE, number_family())
+}
+
+/// Between small and ordinary text, so that figures of the wider number font look as large as the text beside them.
+const NUMBER_SIZE: f32 = 12.5;
+
+/// Sets fonts, both themes' visuals and the spacing of a context.
+pub fn install(ctx: &egui::Context) {
+    ctx.set_fonts(fonts());
+    ctx.all_styles_mut(set_style);
+    for (theme, palette) in [(Theme::Light, &LIGHT), (Theme::Dark, &DARK)] {
+        ctx.style_mut_of(theme, |style| set_visuals(&mut style.visuals, palette));
+    }
+}
+
+fn fonts() -> FontDefinitions {
+    let mut fonts = FontDefinitions::default();
+    // Arrows, ticks and geometric shapes stand in Hack only, so it backs up the text font.
+    let text_fonts: Vec<String> = ["Ubuntu-Light", "Hack", "NotoEmoji-Regular", "emoji-icon-font"].map(str::to_owned).into();
+    let number_fonts: Vec<String> = ["Hack", "Ubuntu-Light", "NotoEmoji-Regular", "emoji-icon-font"].map(str::to_owned).into();
+    fonts.families.insert(FontFamily::Proportional, text_fonts.clone());
+    fonts.families.insert(strong_family(), text_fonts);
+    fonts.families.insert(FontFamily::Monospace, number_fonts.clone());
+    fonts.families.insert(number_family(), number_fonts);
+    for data in fonts.font_data.values_mut() {
+        // Fractional glyph positions blur small text on ordinary screens less than whole ones would space it badly.
+        Arc::make_mut(data).tweak.hinting = Some(true);
+    }
+    fonts
+}
+
+fn set_style(style: &mut egui::Style) {
+    style.text_styles = [
+        (TextStyle::Small, FontId::new(SMALL_SIZE, FontFamily::Proportional)),
+        (TextStyle::Body, FontId::new(BODY_SIZE, FontFamily::Proportional)),
+        (TextStyle::Button, FontId::new(BODY_SIZE, FontFamily::Proportional)),
+        (TextStyle::Heading, FontId::new(HEADING_SIZE, strong_family())),
+        (TextStyle::Monospace, number_font()),
+    ]
+    .into();
+    let spacing = &mut style.spacing;
+    spacing.item_spacing = vec2(8.0, 4.0);
+    spacing.button_padding = vec2(12.0, 4.0);
+    spacing.interact_size = vec2(28.0, 28.0);
+    spacing.menu_margin = Margin::same(4);
+    spacing.window_margin = Margin::same(16);
+    spacing.icon_width = 16.0;
+    spacing.icon_spacing = 8.0;
+    spacing.combo_width = 96.0;
+    spacing.tooltip_width = 360.0;
+    style.animation_time = 0.0;
+    style.scroll_animation = egui::style::ScrollAnimation::none();
+}
+
+fn set_visuals(visuals: &mut egui::Visuals, palette: &Palette) {
+    let hairline = Stroke::new(1.0, palette.hairline);
+    visuals.panel_fill = palette.canvas;
+    visuals.window_fill = palette.surface;
+    visuals.window_stroke = hairline;
+    visuals.window_corner_radius = CornerRadius::same(RADIUS);
+    visuals.menu_corner_radius = CornerRadius::same(RADIUS);
+    visuals.extreme_bg_color = palette.surface;
+    visuals.faint_bg_color = palette.hovered;
+    visuals.code_bg_color = palette.canvas;
+    visuals.weak_text_color = Some(palette.text_dim);
+    visuals.warn_fg_color = palette.warn;
+    visuals.error_fg_color = palette.bad;
+    visuals.hyperlink_color = palette.accent;
+    visuals.selection.bg_fill = palette.selected;
+    visuals.selection.stroke = Stroke::new(1.0, palette.accent);
+    visuals.striped = false;
+    visuals.slider_trailing_fill = true;
+    let widgets = &mut visuals.widgets;
+    for widget in [
+        &mut widgets.noninteractive,
+        &mut widgets.inactive,
+        &mut widgets.hovered,
+        &mut widgets.active,
+        &mut widgets.open,
+    ] {
+        widget.corner_radius = CornerRadius::same(RADIUS);
+        widget.expansion = 0.0;
+        widget.bg_fill = palette.surface;
+        widget.weak_bg_fill = palette.surface;
+        widget.bg_stroke = hairline;
+        widget.fg_stroke = Stroke::new(1.0, palette.text);
+    }
+    widgets.hovered.weak_bg_fill = palette.hovered;
+    widgets.hovered.bg_fill = palette.hovered;
+    widgets.hovered.bg_stroke = Stroke::new(1.0, palette.text_dim);
+    widgets.active.weak_bg_fill = palette.selected;
+    widgets.active.bg_fill = palette.selected;
+    widgets.active.bg_stroke = Stroke::new(1.0, palette.accent);
+    widgets.open.weak_bg_fill = palette.hovered;
+}

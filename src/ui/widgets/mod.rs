@@ -1,0 +1,8 @@
+//! Small building blocks that every panel shares.
+
+mod card;
+mod number;
+pub mod tables;
+
+pub use card::{card, card_with_height, chip, heading_row};
+pub use number::{fixed, number, number_text, signed, value_row};
