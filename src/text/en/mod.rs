@@ -3,3 +3,6 @@
 pub mod arcs;
 pub mod methods;
 pub mod warnings;
+
+pub use methods::*;
+pub use warnings::*;
