@@ -1,4 +1,5 @@
 //! English.
 
+pub mod check;
 pub mod methods;
 pub mod warnings;
