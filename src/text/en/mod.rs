@@ -1,8 +1,12 @@
 //! English.
 
 pub mod arcs;
+pub mod check;
+pub mod cli;
 pub mod methods;
 pub mod warnings;
 
+pub use check::*;
+pub use cli::*;
 pub use methods::*;
 pub use warnings::*;
