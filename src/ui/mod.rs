@@ -5,9 +5,11 @@
 
 pub mod actions;
 pub mod arcs;
+pub mod charts;
 pub mod compare;
 pub mod dialogs;
 pub mod file_dialog;
+pub mod figures;
 pub mod inspector;
 pub mod persisted;
 pub mod poses;

@@ -10,8 +10,8 @@ use crate::calibrate::Method;
 use crate::text::shell as words;
 
 use super::actions::{self, Action};
-use super::arcs::panel::ArcsState;
-use super::compare::panel::CompareState;
+use super::arcs::ArcsState;
+use super::compare::CompareState;
 use super::dialogs::{self, SavePath, SavePathAnswer, UnsavedAnswer};
 use super::file_dialog::{Answer, FileDialog, Purpose};
 use super::persisted::Persisted;
@@ -212,8 +212,8 @@ impl Shell {
                     start::panel::show(ui, &mut context, &mut self.start, &self.persisted.recent_files, actions);
                 }
                 Step::Poses => poses::panel::show(ui, &mut context, &mut self.poses),
-                Step::Arcs => arcs::panel::show(ui, &mut context, &mut self.arcs),
-                Step::Compare => compare::panel::show(ui, &mut context, &mut self.compare),
+                Step::Arcs => arcs::show(ui, &mut context, &mut self.arcs),
+                Step::Compare => compare::show(ui, &mut context, &mut self.compare),
             }
         });
     }

@@ -1,3 +1,9 @@
-//! Step Arcs.
+//! Step 3: the profiles, the arcs found in them, and the radius against the step.
 
-pub mod panel;
+mod curve;
+mod list;
+mod model;
+mod panel;
+mod profile;
+
+pub use panel::{ArcsState, show};

@@ -1,12 +1,383 @@
-//! The step's panel.
+//! The arcs panel: list at the left, profile and curve side by side, one sentence below.
 
-use crate::ui::PanelContext;
+use std::collections::BTreeSet;
+use std::rc::Rc;
 
-/// The panel's own state.
-#[derive(Debug, Default)]
-pub struct ArcsState;
+use egui::{Align, ComboBox, Frame, Key, Layout, Margin, Modifiers, ScrollArea, Ui, UiBuilder, vec2};
 
-/// Draws the step.
-pub fn show(ui: &mut egui::Ui, _context: &mut PanelContext<'_>, _state: &mut ArcsState) {
-    ui.label("Arcs");
+use crate::app::{Document, Results};
+use crate::calibrate::Sweep;
+use crate::fit::CircleMethod;
+use crate::text::arcs as text;
+use crate::ui::figures::std_text;
+use crate::ui::{PanelContext, Selection, theme, widgets};
+
+use super::model::{self, CaptureView, StationRow};
+use super::{curve, list, profile};
+
+/// Width of the list, points.
+const LIST_WIDTH: f32 = 184.0;
+/// Below this width of the plots they stand above each other.
+const SIDE_BY_SIDE_FROM: f32 = 560.0;
+/// Height of each card when they stand above each other.
+const STACKED_HEIGHT: f32 = 420.0;
+/// Height of the strips above and below the plots.
+const STRIP_HEIGHT: f32 = 44.0;
+
+/// Revisions that a cached model was made from.
+type Revisions = (u64, Option<u64>);
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct ViewKey {
+    revisions: Revisions,
+    station_idx: usize,
+    capture_idx: usize,
+    fit: CircleMethod,
+}
+
+/// What the panel remembers between frames.
+#[derive(Debug)]
+pub struct ArcsState {
+    fit: CircleMethod,
+    expanded: BTreeSet<usize>,
+    rows: Option<(Revisions, Rc<Vec<StationRow>>)>,
+    view: Option<(ViewKey, Rc<CaptureView>)>,
+    fitted_station: Option<(u64, usize)>,
+    is_profile_fitted: bool,
+    is_curve_fitted: bool,
+    hovered_capture: Option<usize>,
+}
+
+impl Default for ArcsState {
+    fn default() -> Self {
+        Self {
+            fit: CircleMethod::Robust,
+            expanded: BTreeSet::new(),
+            rows: None,
+            view: None,
+            fitted_station: None,
+            is_profile_fitted: true,
+            is_curve_fitted: true,
+            hovered_capture: None,
+        }
+    }
+}
+
+impl ArcsState {
+    fn rows(&mut self, document: &Document, results: Option<&Results>) -> Rc<Vec<StationRow>> {
+        let revisions = (document.revision, results.map(|results| results.revision));
+        match &self.rows {
+            Some((known, rows)) if *known == revisions => Rc::clone(rows),
+            _ => {
+                let rows = Rc::new(model::station_rows(&document.session, results));
+                self.rows = Some((revisions, Rc::clone(&rows)));
+                rows
+            }
+        }
+    }
+
+    fn view(
+        &mut self,
+        document: &Document,
+        results: Option<&Results>,
+        station_idx: usize,
+        capture_idx: usize,
+    ) -> Option<Rc<CaptureView>> {
+        let key = ViewKey {
+            revisions: (document.revision, results.map(|results| results.revision)),
+            station_idx,
+            capture_idx,
+            fit: self.fit,
+        };
+        if let Some((known, view)) = &self.view
+            && *known == key
+        {
+            return Some(Rc::clone(view));
+        }
+        let view = model::capture_view(&document.session, results, station_idx, capture_idx, self.fit)?;
+        let view = Rc::new(view);
+        self.view = Some((key, Rc::clone(&view)));
+        Some(view)
+    }
+}
+
+/// Shows the panel.
+pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut ArcsState) {
+    let workbench = context.workbench;
+    let Some(document) = workbench.document() else {
+        widgets_empty(ui, text::NO_SESSION);
+        return;
+    };
+    let results = workbench.results();
+    let rows = state.rows(document, results);
+    if rows.is_empty() {
+        widgets_empty(ui, text::NO_STATIONS);
+        return;
+    }
+    let selection = &mut *context.selection;
+    let has_moved = move_selection(ui, &rows, selection);
+    clamp(&rows, selection);
+
+    let station = Some((document.revision, selection.station_idx));
+    if state.fitted_station.map(|(_, station_idx)| station_idx) != station.map(|(_, station_idx)| station_idx) {
+        state.fitted_station = station;
+        state.is_profile_fitted = true;
+        state.is_curve_fitted = true;
+        state.hovered_capture = None;
+    }
+
+    let area = ui.available_rect_before_wrap();
+    let (left, right) = area.split_left_right_at_x(area.left() + LIST_WIDTH.min(area.width() * 0.35));
+    let mut left = ui.new_child(UiBuilder::new().max_rect(left));
+    let hovered_in_list = widgets::card_with_height(
+        &mut left,
+        text::STATIONS,
+        area.height(),
+        |_| {},
+        |ui| list::show(ui, &rows, &mut state.expanded, selection, has_moved).hovered_capture,
+    );
+    let right = right.with_min_x(right.left() + theme::GAP);
+    let mut right = ui.new_child(UiBuilder::new().max_rect(right));
+    right.spacing_mut().item_spacing.y = theme::GAP;
+    if !workbench.results_are_current() {
+        right.set_opacity(0.6);
+    }
+    plots(&mut right, document, results, &rows, selection, state, hovered_in_list);
+    ui.advance_cursor_after_rect(area);
+}
+
+fn widgets_empty(ui: &mut Ui, sentence: &str) {
+    let area = ui.available_rect_before_wrap();
+    let mut inside = ui.new_child(UiBuilder::new().max_rect(area).layout(Layout::top_down(Align::Center)));
+    inside.add_space((area.height() * 0.4).max(0.0));
+    let words = theme::dim(&inside, sentence);
+    inside.label(words);
+    ui.advance_cursor_after_rect(area);
+}
+
+/// Up and down go through the stations, left and right through the steps.
+fn move_selection(ui: &Ui, rows: &[StationRow], selection: &mut Selection) -> bool {
+    // A field that is being typed into keeps its arrows.
+    if ui.ctx().text_edit_focused() {
+        return false;
+    }
+    let pressed = |key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));
+    let before = *selection;
+    if pressed(Key::ArrowDown) {
+        selection.station_idx += 1;
+        selection.capture_idx = 0;
+    }
+    if pressed(Key::ArrowUp) {
+        selection.station_idx = selection.station_idx.saturating_sub(1);
+        selection.capture_idx = 0;
+    }
+    clamp(rows, selection);
+    if pressed(Key::ArrowRight) {
+        selection.capture_idx += 1;
+    }
+    if pressed(Key::ArrowLeft) {
+        selection.capture_idx = selection.capture_idx.saturating_sub(1);
+    }
+    clamp(rows, selection);
+    *selection != before
+}
+
+fn clamp(rows: &[StationRow], selection: &mut Selection) {
+    selection.station_idx = selection.station_idx.min(rows.len().saturating_sub(1));
+    let num_captures = rows.get(selection.station_idx).map_or(0, |row| row.captures.len());
+    selection.capture_idx = selection.capture_idx.min(num_captures.saturating_sub(1));
+}
+
+fn plots(
+    ui: &mut Ui,
+    document: &Document,
+    results: Option<&Results>,
+    rows: &[StationRow],
+    selection: &mut Selection,
+    state: &mut ArcsState,
+    hovered_in_list: Option<usize>,
+) {
+    let station = &rows[selection.station_idx];
+    let sweep = results.and_then(|results| model::sweep_of(results, selection.station_idx)).map(|(_, sweep)| sweep);
+    let shown_capture = state
+        .hovered_capture
+        .filter(|capture_idx| *capture_idx < station.captures.len())
+        .unwrap_or(selection.capture_idx);
+    let view = state.view(document, results, selection.station_idx, shown_capture);
+    let is_out_of_date = results.is_some_and(|results| results.revision != document.revision);
+    top_strip(ui, station, sweep, view.as_deref(), selection, &mut state.fit, is_out_of_date);
+
+    let bottom_height = sweep.map_or(0.0, |_| STRIP_HEIGHT + 8.0 + theme::GAP);
+    let height = ui.available_height() - bottom_height;
+    let title = text::profile_title(&station.label, shown_capture + 1);
+    let ball_radius_mm = model::ball_radius_mm(&document.session);
+    let width = ui.available_width();
+    let hovered_before = state.hovered_capture;
+    if width >= SIDE_BY_SIDE_FROM {
+        let profile_width = ((width - theme::GAP) * 0.56).round();
+        let area = ui.available_rect_before_wrap();
+        let (left, right) = area.split_left_right_at_x(area.left() + profile_width);
+        let right = right.with_min_x(right.left() + theme::GAP);
+        let mut left = ui.new_child(UiBuilder::new().max_rect(left));
+        profile_card(&mut left, &title, height, view.as_deref(), &mut state.is_profile_fitted);
+        let mut right = ui.new_child(UiBuilder::new().max_rect(right));
+        curve_card(&mut right, height, station, sweep, ball_radius_mm, selection, state, hovered_in_list);
+        ui.advance_cursor_after_rect(area.with_max_y(area.top() + height));
+        bottom_strip(ui, sweep);
+    } else {
+        ScrollArea::vertical().id_salt("arcs plots").auto_shrink([false, false]).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = theme::GAP;
+            profile_card(ui, &title, STACKED_HEIGHT, view.as_deref(), &mut state.is_profile_fitted);
+            curve_card(ui, STACKED_HEIGHT, station, sweep, ball_radius_mm, selection, state, hovered_in_list);
+            bottom_strip(ui, sweep);
+        });
+    }
+    if state.hovered_capture != hovered_before {
+        ui.ctx().request_repaint();
+    }
+}
+
+fn top_strip(
+    ui: &mut Ui,
+    station: &StationRow,
+    sweep: Option<&Sweep>,
+    view: Option<&CaptureView>,
+    selection: &mut Selection,
+    fit: &mut CircleMethod,
+    is_out_of_date: bool,
+) {
+    widgets::card(ui, "", |_| {}, |ui| {
+        Frame::new().inner_margin(Margin::symmetric(12, 8)).show(ui, |ui| {
+            ui.horizontal_wrapped(|ui| {
+                ui.set_min_height(STRIP_HEIGHT - 16.0);
+                let label = ui.label(text::FIT);
+                ComboBox::from_id_salt("arcs fit")
+                    .selected_text(text::circle_method(*fit))
+                    .width(148.0)
+                    .show_ui(ui, |ui| {
+                        for method in CircleMethod::ALL {
+                            ui.selectable_value(fit, method, text::circle_method(method));
+                        }
+                    })
+                    .response
+                    .labelled_by(label.id);
+                ui.add_space(8.0);
+                steps(ui, station, selection);
+                ui.add_space(8.0);
+                if let Some(sweep) = sweep {
+                    let angle_deg = sweep.travel_off_normal_rad.to_degrees();
+                    ui.label(theme::dim(ui, text::travel_off_normal(angle_deg)));
+                }
+                if let Some(CaptureView::Profile(model::ProfileModel { section: Ok(section), .. })) = view
+                    && *fit != CircleMethod::Robust
+                {
+                    ui.label(theme::dim(ui, profile::shift_words(section)));
+                }
+                if is_out_of_date {
+                    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                        ui.label(theme::dim(ui, text::OUT_OF_DATE).color(theme::palette(ui).warn));
+                    });
+                }
+            });
+        });
+    });
+}
+
+fn steps(ui: &mut Ui, station: &StationRow, selection: &mut Selection) {
+    let num_steps = station.captures.len();
+    ui.label(theme::dim(ui, text::STEP));
+    ui.scope(|ui| {
+        ui.spacing_mut().button_padding.x = 8.0;
+        let step_to = |ui: &mut Ui, is_possible: bool, sign: &str, name: &str| {
+            let button = ui.add_enabled(is_possible, egui::Button::new(sign)).on_hover_text(name);
+            button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, is_possible, name));
+            button.clicked()
+        };
+        if step_to(ui, selection.capture_idx > 0, "‹", text::PREVIOUS_STEP) {
+            selection.capture_idx -= 1;
+        }
+        ui.label(widgets::number_text(text::step_of(selection.capture_idx + 1, num_steps)));
+        if step_to(ui, selection.capture_idx + 1 < num_steps, "›", text::NEXT_STEP) {
+            selection.capture_idx += 1;
+        }
+    });
+}
+
+fn profile_card(ui: &mut Ui, title: &str, height: f32, view: Option<&CaptureView>, is_fitted: &mut bool) {
+    let right = |ui: &mut Ui| {
+        ui.label(theme::dim(ui, text::TRUE_SCALE));
+    };
+    widgets::card_with_height(ui, title, height, right, |ui| match view {
+        Some(CaptureView::Profile(model)) => profile::show(ui, model, is_fitted),
+        Some(CaptureView::Point([x, y, z])) => {
+            let [x, y, z] = [x, y, z].map(|value| widgets::fixed(*value, 3));
+            empty_card(ui, text::POINT_READING, Some(&text::point_coordinates(&x, &y, &z)));
+        }
+        None => {}
+    });
+}
+
+fn empty_card(ui: &mut Ui, sentence: &str, figures: Option<&str>) {
+    Frame::new().inner_margin(Margin::same(24)).show(ui, |ui| {
+        ui.add_space((ui.available_height() * 0.3).max(0.0));
+        ui.vertical_centered(|ui| {
+            ui.label(theme::dim(ui, sentence));
+            if let Some(figures) = figures {
+                ui.add_space(8.0);
+                ui.label(widgets::number_text(figures));
+            }
+        });
+    });
+}
+
+#[expect(clippy::too_many_arguments, reason = "a card's place, its data and its state, each of another owner")]
+fn curve_card(
+    ui: &mut Ui,
+    height: f32,
+    station: &StationRow,
+    sweep: Option<&Sweep>,
+    ball_radius_mm: Option<f64>,
+    selection: &mut Selection,
+    state: &mut ArcsState,
+    hovered_in_list: Option<usize>,
+) {
+    widgets::card_with_height(ui, text::RADIUS_AGAINST_STEP, height, |_| {}, |ui| {
+        let (Some(sweep), Some(ball_radius_mm)) = (sweep, ball_radius_mm) else {
+            state.hovered_capture = None;
+            let sentence = if station.captures.len() < 2 {
+                text::NO_SWEEP
+            } else if station.is_enabled {
+                text::SWEEP_NOT_EVALUATED
+            } else {
+                text::STATION_LEFT_OUT
+            };
+            empty_card(ui, sentence, None);
+            return;
+        };
+        let emphasised = hovered_in_list;
+        let response =
+            curve::show(ui, sweep, ball_radius_mm, selection.capture_idx, emphasised, &mut state.is_curve_fitted);
+        state.hovered_capture = response.hovered.or(hovered_in_list);
+        if let Some(capture_idx) = response.clicked {
+            selection.capture_idx = capture_idx;
+        }
+    });
+}
+
+fn bottom_strip(ui: &mut Ui, sweep: Option<&Sweep>) {
+    let Some(sweep) = sweep else { return };
+    widgets::card(ui, "", |_| {}, |ui| {
+        Frame::new().inner_margin(Margin::symmetric(12, 8)).show(ui, |ui| {
+            ui.set_min_size(vec2(ui.available_width(), STRIP_HEIGHT - 16.0));
+            ui.horizontal_wrapped(|ui| {
+                ui.label(theme::strong(text::RULE_AND_CURVE));
+                let sentence = text::rule_and_curve(
+                    &std_text(sweep.published_stop_std_mm),
+                    sweep.points.len(),
+                    &std_text(sweep.peak_std_mm),
+                );
+                ui.label(theme::dim(ui, sentence));
+            });
+        });
+    });
 }

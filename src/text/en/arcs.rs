@@ -1,0 +1,195 @@
+//! The arcs panel.
+
+use crate::fit::CircleMethod;
+
+/// Title of the list.
+pub const STATIONS: &str = "Stations";
+/// Head of the column of steps.
+pub const STEPS: &str = "steps";
+/// Head of the column of section radii.
+pub const SECTION_RADIUS: &str = "l / mm";
+/// Head of the column of residuals.
+pub const RMS: &str = "µm";
+/// What the section radius column says, on hover.
+pub const SECTION_RADIUS_HINT: &str = "section radius l of the station's first usable profile";
+/// What the residual column says, on hover.
+pub const RMS_HINT: &str = "root mean square distance of the inliers from the circle, over all profiles of the station";
+/// Before the fit chooser.
+pub const FIT: &str = "Fit";
+/// Before the step buttons.
+pub const STEP: &str = "step";
+/// Name of the button to the step before.
+pub const PREVIOUS_STEP: &str = "Previous step";
+/// Name of the button to the next step.
+pub const NEXT_STEP: &str = "Next step";
+/// On the right of the profile's card.
+pub const TRUE_SCALE: &str = "true scale";
+/// Title of the curve's card.
+pub const RADIUS_AGAINST_STEP: &str = "Radius against step";
+/// Axis title.
+pub const X_AXIS: &str = "x / mm";
+/// Axis title of the range axis; the sensor is at the top of the plot.
+pub const Z_AXIS: &str = "z / mm   (away from sensor ↓)";
+/// Axis title.
+pub const RESIDUAL_AXIS: &str = "residual / µm";
+/// Axis title.
+pub const TRAVEL_AXIS: &str = "travel along y / mm";
+/// Axis title.
+pub const RADIUS_AXIS: &str = "section radius l / mm";
+/// Axis title.
+pub const CURVE_RESIDUAL_AXIS: &str = "l − curve / µm";
+/// Label of the line at the ball's radius.
+pub const BALL_RADIUS_LINE: &str = "l = R";
+/// Legend of the measured radii.
+pub const MEASURED: &str = "measured";
+/// Legend of the fitted curve.
+pub const FITTED: &str = "√(R² − (y − y₀)²)";
+/// Title of the strip at the bottom.
+pub const RULE_AND_CURVE: &str = "Published rule and whole curve";
+/// A sweep that does not reach the largest arc.
+pub const PEAK_NOT_COVERED: &str = "The sweep ends before the largest arc.";
+/// Nothing was measured in a profile yet.
+pub const NOT_MEASURED: &str = "Not measured yet: the arcs are being looked for.";
+/// In place of the curve for a station with one profile.
+pub const NO_SWEEP: &str = "One profile here: record a sweep to see the radius against the step.";
+/// In place of the curve where there are several profiles but no method evaluated them.
+pub const SWEEP_NOT_EVALUATED: &str = "No largest-arc method evaluated this station's steps.";
+/// In place of the curve of a station that does not take part.
+pub const STATION_LEFT_OUT: &str = "This station is left out: tick it in Compare or Poses to see its curve.";
+/// In place of the profile where there is none.
+pub const POINT_READING: &str = "This station holds a ball centre that was already reduced elsewhere; there is no profile to look at.";
+/// In place of the panel without a session.
+pub const NO_SESSION: &str = "Open a session, or one of the samples, to see its profiles.";
+/// In place of the panel for a session without stations.
+pub const NO_STATIONS: &str = "This session has no stations yet: record profiles, or import poses.";
+/// Shown on results of an earlier revision.
+pub const OUT_OF_DATE: &str = "out of date";
+
+/// The fit's name in the chooser.
+#[must_use]
+pub const fn circle_method(method: CircleMethod) -> &'static str {
+    match method {
+        CircleMethod::Robust => "robust geometric",
+        CircleMethod::Geometric => "geometric",
+        CircleMethod::Hyper => "hyper",
+        CircleMethod::Taubin => "Taubin",
+        CircleMethod::Pratt => "Pratt",
+        CircleMethod::Kasa => "Kåsa",
+    }
+}
+
+/// What another fit makes of the same inliers.
+#[must_use]
+pub fn fit_shift(dx: &str, dz: &str, dl: &str) -> String {
+    format!("centre {dx}, {dz} µm · l {dl} µm against robust")
+}
+
+/// Position in the sweep.
+#[must_use]
+pub fn step_of(step: usize, num_steps: usize) -> String {
+    format!("{step} of {num_steps}")
+}
+
+/// Angle between travel and normal.
+#[must_use]
+pub fn travel_off_normal(angle_deg: f64) -> String {
+    format!("travel is {angle_deg:.1}° off the laser's normal")
+}
+
+/// Title of the profile's card.
+#[must_use]
+pub fn profile_title(label: &str, step: usize) -> String {
+    format!("Profile {label}.{step}")
+}
+
+/// Legend of the points on the arc.
+#[must_use]
+pub fn inliers(count: usize) -> String {
+    format!("inlier {count}")
+}
+
+/// Legend of the points off the arc.
+#[must_use]
+pub fn outliers(count: usize) -> String {
+    format!("outlier {count}")
+}
+
+/// Legend of the points elsewhere.
+#[must_use]
+pub fn unused(count: usize) -> String {
+    format!("unused {count}")
+}
+
+/// Legend of the fitted circle.
+#[must_use]
+pub fn section(radius_mm: &str) -> String {
+    format!("section {radius_mm}")
+}
+
+/// Legend of the ball's outline.
+#[must_use]
+pub fn ball(radius_mm: &str) -> String {
+    format!("ball {radius_mm}")
+}
+
+/// Label of the peak.
+#[must_use]
+pub fn peak(travel_mm: &str, std_mm: &str) -> String {
+    format!("peak {travel_mm} ± {std_mm}")
+}
+
+/// Label of the published stop.
+#[must_use]
+pub fn published_stop(travel_mm: &str) -> String {
+    format!("published stop {travel_mm}")
+}
+
+/// What the two evaluations of the sweep are good for.
+#[must_use]
+pub fn rule_and_curve(stop_std_mm: &str, num_steps: usize, peak_std_mm: &str) -> String {
+    format!(
+        "The arc hardly grows near its largest: stopping at the first l ≥ R is good to about ±{stop_std_mm} mm here; the fit over all {num_steps} steps to ±{peak_std_mm} mm."
+    )
+}
+
+/// Refused profiles of a station.
+#[must_use]
+pub fn refused_captures(num_refused: usize, num_captures: usize) -> String {
+    format!("{num_refused} of {num_captures} profiles hold no usable arc.")
+}
+
+/// Readout of a point of the profile.
+#[must_use]
+pub fn point_readout(x_mm: &str, z_mm: &str, residual_um: &str) -> String {
+    format!("x {x_mm}  z {z_mm} mm\nresidual {residual_um} µm")
+}
+
+/// Readout of a step of the sweep.
+#[must_use]
+pub fn step_readout(step: usize, travel_mm: &str, radius_mm: &str, std_mm: &str, residual_um: &str) -> String {
+    format!("step {step} at {travel_mm} mm\nl {radius_mm} ± {std_mm} mm\nl − curve {residual_um} µm")
+}
+
+/// Name of a station's row for a screen reader.
+#[must_use]
+pub fn station_name(label: &str) -> String {
+    format!("Station {label}")
+}
+
+/// Name of a step's row for a screen reader.
+#[must_use]
+pub fn step_name(label: &str, step: usize) -> String {
+    format!("Station {label}, step {step}")
+}
+
+/// Name of the button that shows a station's steps.
+#[must_use]
+pub fn expand(label: &str) -> String {
+    format!("Steps of station {label}")
+}
+
+/// A reading that is already a point.
+#[must_use]
+pub fn point_coordinates(x: &str, y: &str, z: &str) -> String {
+    format!("ball in sensor: ({x}, {y}, {z}) mm")
+}

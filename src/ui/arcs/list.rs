@@ -1,0 +1,239 @@
+//! The list of stations and their steps.
+
+use std::collections::BTreeSet;
+
+use egui::{Align2, Color32, FontId, Id, Rect, ScrollArea, Sense, Ui, WidgetInfo, Role, pos2, vec2};
+
+use crate::text::arcs as text;
+use crate::ui::{Selection, theme, widgets};
+
+use super::model::{CaptureRow, StationRow};
+
+/// What the list tells the panel.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ListResponse {
+    /// The step of the selected station under the pointer.
+    pub hovered_capture: Option<usize>,
+}
+
+#[derive(Clone, Copy)]
+enum Line {
+    Station(usize),
+    Capture(usize, usize),
+}
+
+/// Right edges of the columns as parts of the width, so that the list can be narrowed.
+const STEPS_RIGHT: f32 = 0.40;
+const RADIUS_RIGHT: f32 = 0.68;
+const RMS_RIGHT: f32 = 0.87;
+const STATUS_CENTRE: f32 = 0.94;
+
+/// Shows the list; `reveal` scrolls to the selected row.
+pub fn show(
+    ui: &mut Ui,
+    rows: &[StationRow],
+    expanded: &mut BTreeSet<usize>,
+    selection: &mut Selection,
+    reveal: bool,
+) -> ListResponse {
+    ui.spacing_mut().item_spacing.y = 0.0;
+    head(ui);
+    let mut lines = Vec::new();
+    for (station_idx, row) in rows.iter().enumerate() {
+        lines.push(Line::Station(station_idx));
+        if expanded.contains(&station_idx) {
+            lines.extend((0..row.captures.len()).map(|capture_idx| Line::Capture(station_idx, capture_idx)));
+        }
+    }
+    let mut response = ListResponse::default();
+    ScrollArea::vertical().id_salt("arcs stations").auto_shrink([false, false]).show_rows(
+        ui,
+        theme::ROW_HEIGHT,
+        lines.len(),
+        |ui, range| {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            if reveal && let Some(line_idx) = selected_line(&lines, expanded, selection) {
+                scroll_to(ui, line_idx, range.start);
+            }
+            for line in &lines[range] {
+                match *line {
+                    Line::Station(station_idx) => {
+                        station_line(ui, station_idx, &rows[station_idx], expanded, selection);
+                    }
+                    Line::Capture(station_idx, capture_idx) => {
+                        let row = &rows[station_idx];
+                        if capture_line(ui, station_idx, capture_idx, row, selection) {
+                            response.hovered_capture = Some(capture_idx);
+                        }
+                    }
+                }
+            }
+        },
+    );
+    response
+}
+
+fn selected_line(lines: &[Line], expanded: &BTreeSet<usize>, selection: &Selection) -> Option<usize> {
+    lines.iter().position(|line| match *line {
+        Line::Station(station_idx) => {
+            station_idx == selection.station_idx && !expanded.contains(&selection.station_idx)
+        }
+        Line::Capture(station_idx, capture_idx) => {
+            (station_idx, capture_idx) == (selection.station_idx, selection.capture_idx)
+        }
+    })
+}
+
+#[expect(clippy::cast_precision_loss, reason = "rows of a list on a screen")]
+fn scroll_to(ui: &Ui, line_idx: usize, first_idx: usize) {
+    let top = ui.min_rect().top() + (line_idx as f32 - first_idx as f32) * theme::ROW_HEIGHT;
+    let row = Rect::from_min_size(pos2(ui.min_rect().left(), top), vec2(1.0, theme::ROW_HEIGHT));
+    ui.scroll_to_rect(row, None);
+}
+
+fn head(ui: &mut Ui) {
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), theme::ROW_HEIGHT), Sense::hover());
+    let palette = theme::palette(ui);
+    let columns = [
+        (STEPS_RIGHT, text::STEPS, ""),
+        (RADIUS_RIGHT, text::SECTION_RADIUS, text::SECTION_RADIUS_HINT),
+        (RMS_RIGHT, text::RMS, text::RMS_HINT),
+    ];
+    let mut left = rect.left();
+    for (right, name, hint) in columns {
+        let right = rect.left() + right * rect.width();
+        let font = FontId::proportional(theme::SMALL_SIZE);
+        ui.painter().text(pos2(right, rect.center().y), Align2::RIGHT_CENTER, name, font, palette.text_dim);
+        let cell = Rect::from_min_max(pos2(left, rect.top()), pos2(right, rect.bottom()));
+        if !hint.is_empty() {
+            ui.interact(cell, ui.scope_id().with(name), Sense::hover()).on_hover_text(hint);
+        }
+        left = right;
+    }
+    ui.painter().hline(rect.x_range(), rect.bottom(), egui::Stroke::new(1.0, palette.hairline));
+}
+
+struct Figures<'a> {
+    steps: String,
+    radius_mm: Option<f64>,
+    rms_mm: Option<f64>,
+    problem: Option<&'a str>,
+    is_enabled: bool,
+}
+
+fn figures(ui: &Ui, rect: Rect, row: &Figures<'_>) {
+    let palette = theme::palette(ui);
+    let color = if row.is_enabled { palette.text } else { palette.text_dim };
+    let number = |right: f32, text: &str| {
+        let at = pos2(rect.left() + right * rect.width(), rect.center().y);
+        ui.painter().text(at, Align2::RIGHT_CENTER, text, theme::number_font(), color);
+    };
+    number(STEPS_RIGHT, &row.steps);
+    number(RADIUS_RIGHT, &row.radius_mm.map_or_else(|| "–".to_owned(), |radius| widgets::fixed(radius, 2)));
+    number(RMS_RIGHT, &row.rms_mm.map_or_else(|| "–".to_owned(), |rms| widgets::fixed(rms * 1000.0, 1)));
+    let (mark, mark_color): (&str, Color32) = match (row.is_enabled, row.problem) {
+        (false, _) => ("–", palette.text_dim),
+        (true, Some(_)) => ("!", palette.warn),
+        (true, None) => ("✔", palette.good),
+    };
+    let at = pos2(rect.left() + STATUS_CENTRE * rect.width(), rect.center().y);
+    ui.painter().text(at, Align2::CENTER_CENTER, mark, FontId::proportional(theme::BODY_SIZE), mark_color);
+    ui.painter().hline(rect.x_range(), rect.bottom(), egui::Stroke::new(1.0, palette.hairline));
+}
+
+fn line(ui: &mut Ui, is_selected: bool, is_enabled: bool, name: &str, problem: Option<&str>) -> egui::Response {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), theme::ROW_HEIGHT), Sense::click());
+    response.widget_info(|| WidgetInfo::selected(Role::ListBoxOption, is_enabled, is_selected, name));
+    let palette = theme::palette(ui);
+    if is_selected {
+        ui.painter().rect_filled(rect, 0.0, palette.selected);
+    } else if response.hovered() {
+        ui.painter().rect_filled(rect, 0.0, palette.hovered);
+    }
+    if response.has_focus() {
+        // Arrow keys move the selection here, not the focus.
+        let filter = egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+    }
+    match problem {
+        Some(problem) => response.on_hover_text(problem),
+        None => response,
+    }
+}
+
+fn station_line(
+    ui: &mut Ui,
+    station_idx: usize,
+    row: &StationRow,
+    expanded: &mut BTreeSet<usize>,
+    selection: &mut Selection,
+) {
+    let is_selected = selection.station_idx == station_idx;
+    let response = line(ui, is_selected, true, &text::station_name(&row.label), row.problem.as_deref());
+    let rect = response.rect;
+    figures(
+        ui,
+        rect,
+        &Figures {
+            steps: row.captures.len().to_string(),
+            radius_mm: row.section_radius_mm,
+            rms_mm: row.rms_mm,
+            problem: row.problem.as_deref(),
+            is_enabled: row.is_enabled,
+        },
+    );
+    let palette = theme::palette(ui);
+    let color = if row.is_enabled { palette.text } else { palette.text_dim };
+    let clip = Rect::from_min_max(rect.min, pos2(rect.left() + (STEPS_RIGHT - 0.12) * rect.width(), rect.bottom()));
+    ui.painter().with_clip_rect(clip.intersect(ui.clip_rect())).text(
+        rect.left_center() + vec2(24.0, 0.0),
+        Align2::LEFT_CENTER,
+        &row.label,
+        FontId::proportional(theme::BODY_SIZE),
+        color,
+    );
+    if row.captures.len() > 1 {
+        let handle = Rect::from_min_size(rect.min, vec2(22.0, rect.height()));
+        let toggle = ui.interact(handle, Id::unique(("arcs expand", station_idx)), Sense::click());
+        toggle.widget_info(|| WidgetInfo::labeled(Role::DisclosureTriangle, true, text::expand(&row.label)));
+        let is_expanded = expanded.contains(&station_idx);
+        let sign = if is_expanded { "▼" } else { "▶" };
+        ui.painter().text(handle.center(), Align2::CENTER_CENTER, sign, FontId::proportional(9.0), palette.text_dim);
+        if toggle.clicked() && !expanded.remove(&station_idx) {
+            expanded.insert(station_idx);
+        }
+    }
+    if response.clicked() && !is_selected {
+        selection.station_idx = station_idx;
+        selection.capture_idx = 0;
+    }
+}
+
+fn capture_line(
+    ui: &mut Ui,
+    station_idx: usize,
+    capture_idx: usize,
+    station: &StationRow,
+    selection: &mut Selection,
+) -> bool {
+    let row: &CaptureRow = &station.captures[capture_idx];
+    let is_selected = (selection.station_idx, selection.capture_idx) == (station_idx, capture_idx);
+    let name = text::step_name(&station.label, capture_idx + 1);
+    let response = line(ui, is_selected, true, &name, row.problem.as_deref());
+    figures(
+        ui,
+        response.rect,
+        &Figures {
+            steps: (capture_idx + 1).to_string(),
+            radius_mm: row.section_radius_mm,
+            rms_mm: row.rms_mm,
+            problem: row.problem.as_deref(),
+            is_enabled: station.is_enabled,
+        },
+    );
+    if response.clicked() {
+        selection.station_idx = station_idx;
+        selection.capture_idx = capture_idx;
+    }
+    response.hovered() && selection.station_idx == station_idx
+}

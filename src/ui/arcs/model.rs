@@ -1,0 +1,270 @@
+//! What the arcs panel draws, made without egui from the session and what was measured in it.
+
+use crate::app::Results;
+use crate::app::compare::solution_of;
+use crate::calibrate::{self, Method, Sweep};
+use crate::fit::{ArcFit, Circle, CircleMethod, PointClass};
+use crate::geometry::Profile;
+use crate::session::{Reading, Session, Target};
+use crate::text::arcs as text;
+
+/// A capture in the list.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CaptureRow {
+    /// Section radius, mm.
+    pub section_radius_mm: Option<f64>,
+    /// Fit RMS, mm.
+    pub rms_mm: Option<f64>,
+    /// What is wrong with it, in words.
+    pub problem: Option<String>,
+}
+
+/// A station in the list.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StationRow {
+    /// The user's name for it.
+    pub label: String,
+    /// Whether it takes part.
+    pub is_enabled: bool,
+    /// Its captures.
+    pub captures: Vec<CaptureRow>,
+    /// Section radius of its first usable capture, mm: the one that the fixed-point method takes.
+    pub section_radius_mm: Option<f64>,
+    /// Fit RMS over its usable captures, mm.
+    pub rms_mm: Option<f64>,
+    /// What is wrong with it, in words.
+    pub problem: Option<String>,
+}
+
+/// The list of stations.
+#[must_use]
+pub fn station_rows(session: &Session, results: Option<&Results>) -> Vec<StationRow> {
+    session
+        .stations
+        .iter()
+        .enumerate()
+        .map(|(station_idx, station)| {
+            let captures: Vec<CaptureRow> = (0..station.captures.len())
+                .map(|capture_idx| {
+                    capture_row(results.and_then(|results| results.measured.reading(station_idx, capture_idx)))
+                })
+                .collect();
+            let sweep = results.and_then(|results| sweep_of(results, station_idx));
+            StationRow {
+                label: station.label.clone(),
+                is_enabled: station.enabled,
+                section_radius_mm: captures.iter().find_map(|capture| capture.section_radius_mm),
+                rms_mm: pooled_rms(&captures),
+                problem: station_problem(&captures, sweep.map(|(_, sweep)| sweep)),
+                captures,
+            }
+        })
+        .collect()
+}
+
+fn capture_row(reading: Option<&calibrate::Reading>) -> CaptureRow {
+    let (mut row, nothing) = (CaptureRow { section_radius_mm: None, rms_mm: None, problem: None }, ());
+    match reading {
+        Some(calibrate::Reading::Arc(arc)) => {
+            row.section_radius_mm = Some(arc.circle.radius_mm);
+            row.rms_mm = Some(arc.rms_mm);
+        }
+        Some(calibrate::Reading::Refused(refusal)) => row.problem = Some(refusal.to_string()),
+        Some(calibrate::Reading::Point(_)) | None => nothing,
+    }
+    row
+}
+
+fn pooled_rms(captures: &[CaptureRow]) -> Option<f64> {
+    let values: Vec<f64> = captures.iter().filter_map(|capture| capture.rms_mm).collect();
+    (!values.is_empty()).then(|| crate::geometry::stats::rms(values))
+}
+
+fn station_problem(captures: &[CaptureRow], sweep: Option<&Sweep>) -> Option<String> {
+    let num_refused = captures.iter().filter(|capture| capture.problem.is_some()).count();
+    if num_refused > 0 {
+        return Some(text::refused_captures(num_refused, captures.len()));
+    }
+    sweep.filter(|sweep| !sweep.covers_peak).map(|_| text::PEAK_NOT_COVERED.to_owned())
+}
+
+/// The evaluated sweep of a station: that of the whole curve, else that of the published stop.
+#[must_use]
+pub fn sweep_of(results: &Results, station_idx: usize) -> Option<(Method, &Sweep)> {
+    [Method::BallMaxArc, Method::BallMaxArcStep].into_iter().find_map(|method| {
+        let stations = &solution_of(&results.methods, method)?.stations;
+        let station = stations.iter().find(|station| station.station_idx == station_idx)?;
+        station.sweep.as_ref().map(|sweep| (method, sweep))
+    })
+}
+
+/// A point of a profile.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProfilePoint {
+    /// Across the line, mm.
+    pub x_mm: f64,
+    /// Along the range axis, mm.
+    pub z_mm: f64,
+    /// What it was taken for.
+    pub class: PointClass,
+    /// Distance from the shown circle, µm, positive outside.
+    pub residual_um: f64,
+}
+
+/// The section found in a profile, as one of the circle fits sees it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SectionModel {
+    /// The circle of the chosen fit.
+    pub circle: Circle,
+    /// Standard deviations of centre x, centre z and radius, mm, from the robust fit.
+    pub std_mm: [f64; 3],
+    /// RMS distance of the inliers from the shown circle, µm.
+    pub rms_um: f64,
+    /// Angle of the arc, degrees.
+    pub angle_deg: f64,
+    /// Shown minus robust circle, µm: centre x, centre z, radius.
+    pub shift_um: [f64; 3],
+}
+
+/// A profile with what was found in it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProfileModel {
+    /// The valid points.
+    pub points: Vec<ProfilePoint>,
+    /// The section; the sentence says why there is none.
+    pub section: Result<SectionModel, String>,
+    /// Whether z grows away from the sensor: the ball shows its near side, so its centre lies further away.
+    pub z_grows_away: bool,
+    /// The ball's radius, mm.
+    pub ball_radius_mm: Option<f64>,
+}
+
+impl ProfileModel {
+    /// Number of points of a class.
+    #[must_use]
+    pub fn count(&self, class: PointClass) -> usize {
+        self.points.iter().filter(|point| point.class == class).count()
+    }
+}
+
+/// The profile of a capture for drawing, with the circle of `method` through the inliers.
+#[must_use]
+pub fn profile_model(
+    profile: &Profile,
+    reading: Option<&calibrate::Reading>,
+    ball_radius_mm: Option<f64>,
+    method: CircleMethod,
+) -> ProfileModel {
+    let arc = match reading {
+        Some(calibrate::Reading::Arc(arc)) => Ok(arc.as_ref()),
+        Some(calibrate::Reading::Refused(refusal)) => Err(refusal.to_string()),
+        Some(calibrate::Reading::Point(_)) | None => Err(text::NOT_MEASURED.to_owned()),
+    };
+    let section = arc.clone().and_then(|arc| section_model(arc, method));
+    let circle = section.as_ref().ok().map(|section| section.circle);
+    let points: Vec<ProfilePoint> = profile
+        .valid_points()
+        .map(|(point_idx, x_mm, z_mm)| ProfilePoint {
+            x_mm,
+            z_mm,
+            class: arc.as_ref().ok().and_then(|arc| arc.classes.get(point_idx).copied()).unwrap_or(PointClass::Unused),
+            residual_um: circle.map_or(f64::NAN, |circle| circle.distance_mm(x_mm, z_mm) * 1000.0),
+        })
+        .collect();
+    ProfileModel {
+        z_grows_away: z_grows_away(&points, circle.as_ref()),
+        points,
+        section,
+        ball_radius_mm,
+    }
+}
+
+fn section_model(arc: &ArcFit, method: CircleMethod) -> Result<SectionModel, String> {
+    let circle = match method {
+        CircleMethod::Robust => arc.circle,
+        other => other.fit(&arc.inlier_x_mm, &arc.inlier_z_mm).map_err(|error| error.to_string())?,
+    };
+    let distances = arc.inlier_x_mm.iter().zip(&arc.inlier_z_mm).map(|(x, z)| circle.distance_mm(*x, *z) * 1000.0);
+    Ok(SectionModel {
+        circle,
+        std_mm: arc.std_mm(),
+        rms_um: crate::geometry::stats::rms(distances),
+        angle_deg: arc.angle_rad.to_degrees(),
+        shift_um: [
+            (circle.x_mm - arc.circle.x_mm) * 1000.0,
+            (circle.z_mm - arc.circle.z_mm) * 1000.0,
+            (circle.radius_mm - arc.circle.radius_mm) * 1000.0,
+        ],
+    })
+}
+
+fn z_grows_away(points: &[ProfilePoint], circle: Option<&Circle>) -> bool {
+    let mean = |points: &mut dyn Iterator<Item = f64>| {
+        let (sum, count) = points.fold((0.0, 0.0), |(sum, count), z| (sum + z, count + 1.0));
+        if count > 0.0 { sum / count } else { 0.0 }
+    };
+    match circle {
+        Some(circle) => {
+            let mut on_arc = points.iter().filter(|point| point.class == PointClass::Inlier).map(|point| point.z_mm);
+            mean(&mut on_arc) <= circle.z_mm
+        }
+        // Without an arc, most profilers count the range from themselves.
+        None => mean(&mut points.iter().map(|point| point.z_mm)) >= 0.0,
+    }
+}
+
+/// What the middle of the panel shows for a capture.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CaptureView {
+    /// A profile.
+    Profile(ProfileModel),
+    /// A point, already reduced elsewhere: its coordinates in the sensor frame, mm.
+    Point([f64; 3]),
+}
+
+/// The view of a capture; `None` if the session has no such capture.
+#[must_use]
+pub fn capture_view(
+    session: &Session,
+    results: Option<&Results>,
+    station_idx: usize,
+    capture_idx: usize,
+    method: CircleMethod,
+) -> Option<CaptureView> {
+    let capture = session.stations.get(station_idx)?.captures.get(capture_idx)?;
+    Some(match &capture.reading {
+        Reading::Point(point) => CaptureView::Point([point.x, point.y, point.z]),
+        Reading::Profile(profile) => CaptureView::Profile(profile_model(
+            profile,
+            results.and_then(|results| results.measured.reading(station_idx, capture_idx)),
+            ball_radius_mm(session),
+            method,
+        )),
+    })
+}
+
+/// The ball's radius, mm, if the target is a ball.
+#[must_use]
+pub const fn ball_radius_mm(session: &Session) -> Option<f64> {
+    match session.target {
+        Target::Ball { radius_mm } => Some(radius_mm),
+        _ => None,
+    }
+}
+
+/// The fitted curve l = √(R² − (travel − peak)²) as points to draw; empty beyond the ball.
+#[must_use]
+pub fn curve_points(peak_mm: f64, ball_radius_mm: f64, travel_mm: [f64; 2]) -> Vec<[f64; 2]> {
+    const NUM_POINTS: u32 = 160;
+    (0..=NUM_POINTS)
+        .filter_map(|idx| {
+            let travel = travel_mm[0] + (travel_mm[1] - travel_mm[0]) * f64::from(idx) / f64::from(NUM_POINTS);
+            let squared = ball_radius_mm * ball_radius_mm - (travel - peak_mm) * (travel - peak_mm);
+            (squared >= 0.0).then(|| [travel, squared.sqrt()])
+        })
+        .collect()
+}
+
+#[cfg(test)]
+#[path = "model_tests.rs"]
+mod tests;

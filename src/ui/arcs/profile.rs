@@ -1,0 +1,210 @@
+//! The profile in true scale and its residuals.
+
+use egui::{Align2, Color32, Id, Stroke, Ui, vec2};
+use egui_plot::MarkerShape;
+
+use crate::fit::PointClass;
+use crate::text::arcs as text;
+use crate::ui::charts::{self, Canvas, Chart, Extent, LegendEntry, LegendGlyph};
+use crate::ui::figures::{decimals_of_std, with_std};
+use crate::ui::{theme, widgets};
+
+use super::model::{ProfileModel, SectionModel};
+
+/// The part of the height that the profile takes; its residuals get the rest.
+const PROFILE_PART: f32 = 0.62;
+/// Radius of a point of a profile, points.
+const POINT_RADIUS: f32 = 1.6;
+/// Points closer than this, points on the screen, are painted once.
+const THIN_TO: f32 = 0.75;
+
+/// Shows both plots in the space available.
+pub fn show(ui: &mut Ui, model: &ProfileModel, is_fitted: &mut bool) {
+    charts::legend(ui, &entries(ui, model));
+    let group = Id::unique("arcs profile x");
+    let height = ui.available_height();
+    let has_section = model.section.is_ok();
+    let profile_height = if has_section { (height * PROFILE_PART).round() } else { height };
+    let mut chart = Chart::new(Id::unique("arcs profile"), text::X_AXIS, text::Z_AXIS, profile_height, profile_extent(model));
+    chart.invert_y = model.z_grows_away;
+    chart.has_equal_scales = true;
+    chart.x_group = Some(group);
+    let canvas = chart.show(ui, is_fitted);
+    paint_profile(ui, &canvas, model);
+    match &model.section {
+        Ok(section) => {
+            let mut strip_extent = residual_extent(model);
+            strip_extent.x = [section.circle.x_mm - 1.0, section.circle.x_mm + 1.0];
+            let mut strip = Chart::new(
+                Id::unique("arcs residuals"),
+                text::X_AXIS,
+                text::RESIDUAL_AXIS,
+                ui.available_height(),
+                strip_extent,
+            );
+            strip.x_group = Some(group);
+            strip.follows_x = true;
+            rule(ui);
+            let strip_canvas = strip.show(ui, is_fitted);
+            paint_residuals(ui, &strip_canvas, model);
+            readout(ui, &canvas, &strip_canvas, model);
+        }
+        Err(reason) => refusal(ui, &canvas, reason),
+    }
+}
+
+/// The hairline between two plots of a card.
+pub fn rule(ui: &Ui) {
+    let stroke = Stroke::new(1.0, theme::palette(ui).hairline);
+    ui.painter().hline(ui.max_rect().x_range(), ui.cursor().top() - 2.0, stroke);
+}
+
+fn entries(ui: &Ui, model: &ProfileModel) -> Vec<LegendEntry> {
+    let palette = theme::palette(ui);
+    let mut entries = Vec::new();
+    let mut add = |glyph, color, text| entries.push(LegendEntry { glyph, color, text });
+    let circle = MarkerShape::Circle;
+    if let Ok(section) = &model.section {
+        add(LegendGlyph::Solid(circle), theme::INLIER, text::inliers(model.count(PointClass::Inlier)));
+        let num_outliers = model.count(PointClass::Outlier);
+        if num_outliers > 0 {
+            add(LegendGlyph::Hollow(circle), theme::OUTLIER, text::outliers(num_outliers));
+        }
+        let section_color = theme::method_color(crate::calibrate::Method::BallMaxArc);
+        add(LegendGlyph::Line, section_color, text::section(&radius_words(section)));
+    }
+    let num_unused = model.count(PointClass::Unused);
+    if num_unused > 0 {
+        add(LegendGlyph::Solid(circle), theme::UNUSED, text::unused(num_unused));
+    }
+    if let (Some(radius_mm), true) = (model.ball_radius_mm, model.section.is_ok()) {
+        add(LegendGlyph::Dashed, palette.text_dim, text::ball(&widgets::fixed(radius_mm, 3)));
+    }
+    entries
+}
+
+/// The near half of the ball with some room towards the sensor; without a section, all points.
+fn profile_extent(model: &ProfileModel) -> Extent {
+    let mut extent = Extent::NOTHING;
+    if let Ok(SectionModel { circle, .. }) = &model.section {
+        let reach_mm = model.ball_radius_mm.unwrap_or(circle.radius_mm).max(circle.radius_mm);
+        let towards_sensor = if model.z_grows_away { -1.0 } else { 1.0 };
+        extent.include(circle.x_mm - reach_mm * 1.15, circle.z_mm + towards_sensor * reach_mm * 1.2);
+        extent.include(circle.x_mm + reach_mm * 1.15, circle.z_mm - towards_sensor * reach_mm * 0.45);
+        return extent;
+    }
+    for point in &model.points {
+        extent.include(point.x_mm, point.z_mm);
+    }
+    extent
+}
+
+fn residual_extent(model: &ProfileModel) -> Extent {
+    let largest = inliers(model).map(|point| point.residual_um.abs()).fold(1.0, f64::max);
+    Extent { x: [-1.0, 1.0], y: [-largest * 1.1, largest * 1.1] }
+}
+
+fn inliers(model: &ProfileModel) -> impl Iterator<Item = &super::model::ProfilePoint> {
+    model.points.iter().filter(|point| point.class == PointClass::Inlier)
+}
+
+fn paint_profile(ui: &Ui, canvas: &Canvas, model: &ProfileModel) {
+    let palette = theme::palette(ui);
+    let section_color = theme::method_color(crate::calibrate::Method::BallMaxArc);
+    if let Ok(section) = &model.section {
+        let circle = section.circle;
+        let centre = canvas.at(circle.x_mm, circle.z_mm);
+        #[expect(clippy::cast_possible_truncation, reason = "screen coordinates")]
+        let on_screen = |length_mm: f64| length_mm as f32 * canvas.scale();
+        if let Some(ball_radius_mm) = model.ball_radius_mm {
+            let stroke = Stroke::new(1.0, palette.text_dim.gamma_multiply(0.7));
+            charts::dashed_circle(&canvas.painter, centre, on_screen(ball_radius_mm), stroke);
+        }
+        canvas.painter.circle_stroke(centre, on_screen(circle.radius_mm), Stroke::new(1.5, section_color));
+    }
+    for (class, color, is_solid) in [
+        (PointClass::Unused, theme::UNUSED, true),
+        (PointClass::Inlier, theme::INLIER, true),
+        (PointClass::Outlier, theme::OUTLIER, false),
+    ] {
+        let points = model.points.iter().filter(|point| point.class == class);
+        let on_screen = points.map(|point| canvas.at(point.x_mm, point.z_mm));
+        for at in charts::thinned(on_screen, canvas.rect(), THIN_TO) {
+            if is_solid {
+                canvas.painter.circle_filled(at, POINT_RADIUS, color);
+            } else {
+                canvas.painter.circle_stroke(at, POINT_RADIUS + 1.4, Stroke::new(1.2, color));
+            }
+        }
+    }
+    if let Ok(section) = &model.section {
+        let circle = section.circle;
+        let centre = canvas.at(circle.x_mm, circle.z_mm);
+        let stroke = Stroke::new(1.8, section_color);
+        canvas.painter.line_segment([centre - vec2(6.0, 0.0), centre + vec2(6.0, 0.0)], stroke);
+        canvas.painter.line_segment([centre - vec2(0.0, 6.0), centre + vec2(0.0, 6.0)], stroke);
+        let label = format!(
+            "({}, {})",
+            with_std(circle.x_mm, section.std_mm[0]),
+            with_std(circle.z_mm, section.std_mm[1])
+        );
+        canvas.note(ui, centre + vec2(0.0, -12.0), Align2::CENTER_BOTTOM, &label, palette.text);
+    }
+}
+
+fn paint_residuals(ui: &Ui, canvas: &Canvas, model: &ProfileModel) {
+    let zero = canvas.at(0.0, 0.0).y;
+    canvas.painter.hline(canvas.rect().x_range(), zero, Stroke::new(1.0, theme::palette(ui).text_dim.gamma_multiply(0.6)));
+    let on_screen = inliers(model).map(|point| canvas.at(point.x_mm, point.residual_um));
+    for at in charts::thinned(on_screen, canvas.rect(), THIN_TO) {
+        canvas.painter.circle_filled(at, POINT_RADIUS, theme::INLIER);
+    }
+}
+
+/// The inlier under the pointer, marked in both plots.
+fn readout(ui: &Ui, profile: &Canvas, strip: &Canvas, model: &ProfileModel) {
+    let in_profile = profile.hovered(inliers(model).map(|point| (point, [point.x_mm, point.z_mm])));
+    let in_strip = strip.hovered(inliers(model).map(|point| (point, [point.x_mm, point.residual_um])));
+    let Some(point) = in_profile.or(in_strip) else { return };
+    let ring = Stroke::new(1.5, theme::palette(ui).text);
+    for (canvas, at) in [
+        (profile, profile.at(point.x_mm, point.z_mm)),
+        (strip, strip.at(point.x_mm, point.residual_um)),
+    ] {
+        canvas.painter.circle(at, POINT_RADIUS + 2.0, Color32::TRANSPARENT, ring);
+    }
+    let words = text::point_readout(
+        &widgets::fixed(point.x_mm, 3),
+        &widgets::fixed(point.z_mm, 3),
+        &widgets::signed(point.residual_um, 1),
+    );
+    let (canvas, at) = if in_profile.is_some() {
+        (profile, profile.at(point.x_mm, point.z_mm))
+    } else {
+        (strip, strip.at(point.x_mm, point.residual_um))
+    };
+    canvas.note(ui, at + vec2(10.0, -8.0), Align2::LEFT_BOTTOM, &words, theme::palette(ui).text);
+}
+
+fn refusal(ui: &mut Ui, canvas: &Canvas, reason: &str) {
+    let palette = theme::palette(ui);
+    let width = (canvas.rect().width() - 32.0).max(80.0);
+    let words = format!("! {reason}");
+    let galley = ui.painter().layout(words.clone(), egui::FontId::proportional(theme::BODY_SIZE), palette.warn, width);
+    let rect = egui::Rect::from_min_size(canvas.rect().left_top() + vec2(12.0, 8.0), galley.size());
+    canvas.painter.rect_filled(rect.expand(6.0), f32::from(theme::RADIUS), palette.surface.gamma_multiply(0.92));
+    canvas.painter.galley(rect.min, galley, palette.warn);
+    let response = ui.interact(rect, Id::unique("arcs refusal"), egui::Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, reason));
+}
+
+/// The shift of another fit against the robust one, in words.
+pub fn shift_words(section: &SectionModel) -> String {
+    let [dx, dz, dl] = section.shift_um.map(|shift| widgets::signed(shift, 1));
+    text::fit_shift(&dx, &dz, &dl)
+}
+
+/// The section's radius with the digits that its standard deviation allows.
+fn radius_words(section: &SectionModel) -> String {
+    widgets::fixed(section.circle.radius_mm, decimals_of_std(section.std_mm[2]))
+}

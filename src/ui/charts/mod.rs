@@ -1,0 +1,316 @@
+//! The frame that all plots share: axes with units, few grid lines, one way to fit, pan and zoom, and the painting of
+//! data on top. `egui_plot` keeps axes and view; the data is painted here, so that every mark looks the same everywhere
+//! and 10⁵ points cost no more than the pixels they cover.
+
+mod legend;
+mod marks;
+
+use egui::{Id, Painter, Pos2, Rangef, Rect, Response, Ui, pos2};
+use egui_plot::{AxisHints, GridInput, GridMark, Plot, PlotPoint, PlotTransform};
+
+use crate::ui::{theme, widgets};
+
+pub use legend::{LegendEntry, LegendGlyph, legend};
+pub use marks::{dashed_circle, dashed_line, dotted_line, ellipse, error_bar, marker, thinned};
+
+/// Grid lines stand at least this far apart, points.
+const GRID_SPACING: f32 = 44.0;
+/// Room for the tick labels and the title of a y axis, points; fixed, so that plots above each other line up.
+const Y_AXIS_WIDTH: f32 = 44.0;
+/// Free room around the data, as a part of its extent.
+const MARGIN: f64 = 0.06;
+
+/// What a plot shows when it is fitted to its data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extent {
+    /// Range of x.
+    pub x: [f64; 2],
+    /// Range of y.
+    pub y: [f64; 2],
+}
+
+impl Extent {
+    /// Nothing yet; grows with [`Self::include`].
+    pub const NOTHING: Self = Self {
+        x: [f64::INFINITY, f64::NEG_INFINITY],
+        y: [f64::INFINITY, f64::NEG_INFINITY],
+    };
+
+    /// Grows to hold a point.
+    pub fn include(&mut self, x: f64, y: f64) {
+        self.x = [self.x[0].min(x), self.x[1].max(x)];
+        self.y = [self.y[0].min(y), self.y[1].max(y)];
+    }
+
+    /// With a margin, and never empty.
+    fn with_margin(self) -> Self {
+        let widen = |[low, high]: [f64; 2]| {
+            if !(low.is_finite() && high.is_finite()) {
+                return [-1.0, 1.0];
+            }
+            let margin = if high > low { (high - low) * MARGIN } else { low.abs().max(1.0) * MARGIN };
+            [low - margin, high + margin]
+        };
+        Self { x: widen(self.x), y: widen(self.y) }
+    }
+
+    /// Widened in one direction until both scales are equal in a plot of this size.
+    fn with_equal_scales(self, width: f64, height: f64) -> Self {
+        let scale = ((self.x[1] - self.x[0]) / width).max((self.y[1] - self.y[0]) / height);
+        let around = |[low, high]: [f64; 2], size: f64| {
+            let middle = f64::midpoint(low, high);
+            [middle - scale * size / 2.0, middle + scale * size / 2.0]
+        };
+        Self { x: around(self.x, width), y: around(self.y, height) }
+    }
+}
+
+/// A plot to be shown.
+pub struct Chart<'a> {
+    /// Unique name in the window.
+    pub id: Id,
+    /// Title of the x axis with its unit.
+    pub x_title: &'a str,
+    /// Title of the y axis with its unit.
+    pub y_title: &'a str,
+    /// Height over all, points.
+    pub height: f32,
+    /// What to show when fitted.
+    pub extent: Extent,
+    /// Whether y grows downwards.
+    pub invert_y: bool,
+    /// Whether a millimetre is equally long both ways.
+    pub has_equal_scales: bool,
+    /// Plots of the same group share their x range; the first one shown leads.
+    pub x_group: Option<Id>,
+    /// Whether this plot takes its x range from the group.
+    pub follows_x: bool,
+    /// Names for the marks of the x axis in place of numbers; mark `n` stands at x = n.
+    pub x_names: Option<&'a [String]>,
+}
+
+impl<'a> Chart<'a> {
+    /// A plain plot; set the other fields as needed.
+    #[must_use]
+    pub fn new(id: Id, x_title: &'a str, y_title: &'a str, height: f32, extent: Extent) -> Self {
+        Self {
+            id,
+            x_title,
+            y_title,
+            height,
+            extent,
+            invert_y: false,
+            has_equal_scales: false,
+            x_group: None,
+            follows_x: false,
+            x_names: None,
+        }
+    }
+
+    /// Shows axes and grid. `is_fitted` becomes false when the user pans or zooms, and true on a double click.
+    pub fn show(self, ui: &mut Ui, is_fitted: &mut bool) -> Canvas {
+        let palette = theme::palette(ui);
+        let tick_font = egui::FontId::proportional(theme::SMALL_SIZE);
+        let title = |text: &str| theme::dim(ui, text).size(theme::SMALL_SIZE);
+        let names = self.x_names.map(<[String]>::to_vec);
+        let x_axis = AxisHints::new_x()
+            .label(title(self.x_title))
+            .tick_label_font(tick_font.clone())
+            .tick_label_color(palette.text_dim)
+            .label_spacing(Rangef::new(8.0, 9.0))
+            .formatter(move |mark, _| match &names {
+                Some(names) => name_at(names, mark.value),
+                None => tick(mark),
+            });
+        let y_axis = AxisHints::new_y()
+            .label(title(self.y_title))
+            .tick_label_font(tick_font)
+            .tick_label_color(palette.text_dim)
+            .label_spacing(Rangef::new(8.0, 9.0))
+            .min_thickness(Y_AXIS_WIDTH)
+            .formatter(|mark, _| tick(mark));
+        let has_names = self.x_names.is_some();
+        let mut plot = Plot::new(self.id)
+            .id(self.id)
+            .height(self.height)
+            .show_background(false)
+            .allow_scroll(false)
+            .allow_axis_zoom_drag(false)
+            .allow_drag(!has_names)
+            .allow_zoom(!has_names)
+            .allow_boxed_zoom(!has_names)
+            .show_x(false)
+            .show_y(false)
+            .invert_y(self.invert_y)
+            .grid_color(palette.hairline)
+            .grid_fade(0.0)
+            .grid_spacing(Rangef::new(GRID_SPACING, GRID_SPACING + 1.0))
+            .x_grid_spacer(move |input| if has_names { whole_marks(&input) } else { marks(&input) })
+            .y_grid_spacer(|input| marks(&input))
+            .custom_x_axes(vec![x_axis])
+            .custom_y_axes(vec![y_axis]);
+        if self.has_equal_scales {
+            plot = plot.data_aspect(1.0);
+        }
+        if let Some(group) = self.x_group {
+            plot = plot.link_axis(group, [true, false]);
+        }
+        if has_names {
+            // One mark a name, however close; those without room for their label are left out by the axis.
+            plot = plot.show_grid([false, true]);
+        }
+        let mut fitted = *is_fitted;
+        let extent = self.extent.with_margin();
+        let shown = plot.show(ui, |plot_ui| {
+            let response = plot_ui.response();
+            if response.dragged() || (response.hovered() && plot_ui.ctx().input(|input| input.zoom_delta() - 1.0).abs() > 0.0) {
+                fitted = has_names;
+            }
+            if response.double_clicked() {
+                fitted = true;
+            }
+            if fitted {
+                let size = response.rect.size();
+                let view = if self.has_equal_scales {
+                    extent.with_equal_scales(f64::from(size.x.max(1.0)), f64::from(size.y.max(1.0)))
+                } else {
+                    extent
+                };
+                if !self.follows_x {
+                    plot_ui.set_plot_bounds_x(view.x[0]..=view.x[1]);
+                }
+                plot_ui.set_plot_bounds_y(view.y[0]..=view.y[1]);
+            }
+            fitted
+        });
+        *is_fitted = shown.inner;
+        Canvas {
+            painter: ui.painter().with_clip_rect(shown.response.rect.intersect(ui.clip_rect())),
+            transform: shown.transform,
+            response: shown.response,
+        }
+    }
+}
+
+/// Where data is painted.
+pub struct Canvas {
+    /// Clipped to the plot.
+    pub painter: Painter,
+    /// From data to points on the screen.
+    pub transform: PlotTransform,
+    /// The pointer's doings.
+    pub response: Response,
+}
+
+impl Canvas {
+    /// Where a value stands on the screen.
+    #[must_use]
+    pub fn at(&self, x: f64, y: f64) -> Pos2 {
+        self.transform.position_from_point(&PlotPoint::new(x, y))
+    }
+
+    /// Length of a data unit along x, points.
+    #[must_use]
+    #[expect(clippy::cast_possible_truncation, reason = "screen coordinates")]
+    pub fn scale(&self) -> f32 {
+        self.transform.dpos_dvalue_x().abs() as f32
+    }
+
+    /// The plot's rectangle.
+    #[must_use]
+    pub const fn rect(&self) -> Rect {
+        self.response.rect
+    }
+
+    /// The item nearest to the pointer, within a finger's width.
+    pub fn hovered<T>(&self, items: impl IntoIterator<Item = (T, [f64; 2])>) -> Option<T> {
+        const REACH: f32 = 10.0;
+        let pointer = self.response.hover_pos()?;
+        items
+            .into_iter()
+            .map(|(item, [x, y])| (item, self.at(x, y).distance_sq(pointer)))
+            .filter(|(_, distance_sq)| *distance_sq <= REACH * REACH)
+            .min_by(|(_, a), (_, b)| a.total_cmp(b))
+            .map(|(item, _)| item)
+    }
+
+    /// A short text with its ground, kept inside the plot.
+    pub fn note(&self, ui: &Ui, anchor: Pos2, align: egui::Align2, text: &str, color: egui::Color32) {
+        let galley = ui.painter().layout_no_wrap(text.to_owned(), egui::FontId::proportional(theme::SMALL_SIZE), color);
+        let wanted = align.anchor_size(anchor, galley.size());
+        let room = self.rect().shrink(4.0);
+        let left = wanted.left().clamp(room.left(), (room.right() - galley.size().x).max(room.left()));
+        let top = wanted.top().clamp(room.top(), (room.bottom() - galley.size().y).max(room.top()));
+        let rect = Rect::from_min_size(pos2(left, top), galley.size());
+        // A veil, so that the text is legible across lines and points.
+        self.painter.rect_filled(rect.expand2(egui::vec2(3.0, 1.0)), 2.0, theme::palette(ui).surface.gamma_multiply(0.8));
+        self.painter.galley(rect.min, galley, color);
+    }
+}
+
+fn tick(mark: GridMark) -> String {
+    let decimals = (-mark.step_size.log10()).ceil().clamp(0.0, 6.0);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to 0..=6")]
+    widgets::fixed(mark.value, decimals as usize)
+}
+
+fn name_at(names: &[String], value: f64) -> String {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates; out of range has no name")]
+    names.get(value.max(-1.0).round() as usize).filter(|_| value > -0.5).cloned().unwrap_or_default()
+}
+
+/// Grid lines at 1, 2 or 5 times a power of ten.
+fn marks(input: &GridInput) -> Vec<GridMark> {
+    let smallest = input.base_step_size * 1.02;
+    if !(smallest.is_finite() && smallest > 0.0) {
+        return Vec::new();
+    }
+    let decade = 10.0_f64.powf(smallest.log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * decade).into_iter().find(|step| *step >= smallest);
+    spaced(input.bounds, step.unwrap_or(smallest))
+}
+
+fn whole_marks(input: &GridInput) -> Vec<GridMark> {
+    spaced(input.bounds, 1.0)
+}
+
+fn spaced((low, high): (f64, f64), step: f64) -> Vec<GridMark> {
+    const MOST: f64 = 500.0;
+    let (first, last) = ((low / step).ceil(), (high / step).floor());
+    if !(last - first < MOST) {
+        return Vec::new();
+    }
+    let mut values = Vec::new();
+    let mut count = first;
+    while count <= last {
+        values.push(GridMark { value: count * step, step_size: step });
+        count += 1.0;
+    }
+    values
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn grid_lines_fall_on_round_numbers() {
+        let input = GridInput { bounds: (-0.31, 0.29), base_step_size: 0.07 };
+        let values: Vec<f64> = marks(&input).iter().map(|mark| mark.value).collect();
+        assert_eq!(values.len(), 5);
+        assert!((values[0] + 0.3).abs() < 0.11, "{values:?}");
+        assert_eq!(tick(GridMark { value: -0.2, step_size: 0.1 }), "−0.2");
+    }
+
+    #[test]
+    fn equal_scales_only_widen() {
+        let extent = Extent { x: [0.0, 10.0], y: [0.0, 1.0] }.with_equal_scales(200.0, 100.0);
+        assert_eq!(extent, Extent { x: [0.0, 10.0], y: [-2.0, 3.0] });
+    }
+
+    #[test]
+    fn an_empty_extent_still_has_a_view() {
+        let view = Extent::NOTHING.with_margin();
+        assert!(view.x[1] > view.x[0] && view.y[1] > view.y[0]);
+    }
+}
