@@ -1,5 +1,6 @@
 //! English.
 
 pub mod arcs;
+pub mod compare;
 pub mod methods;
 pub mod warnings;
