@@ -16,6 +16,18 @@ pub enum SolveError {
         /// The least number that will do.
         needed: usize,
     },
+    /// The bundle needs the points, not reduced centres.
+    #[error(
+        "found {found} station{plural} with a usable profile; at least {needed} are needed, as this method works on the \
+         points of profiles",
+        plural = if *found == 1 { "" } else { "s" }
+    )]
+    TooFewProfileStations {
+        /// Stations with a usable profile.
+        found: usize,
+        /// The least number that will do.
+        needed: usize,
+    },
     /// A largest-arc method without steps to look at.
     #[error(
         "found {found} station{plural} with a sweep, and at least {needed} are needed: \

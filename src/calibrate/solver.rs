@@ -1,0 +1,156 @@
+//! Least squares for the nine unknowns, on SE(3) × R³: damped Gauss–Newton on a sum of quadratics in the ball's centre.
+
+use nalgebra::{Matrix6, SMatrix, SVector};
+
+use super::SolveError;
+use super::observation::{CentreObservation, NUM_UNKNOWNS, State};
+
+/// The 9 × 9 matrix of the normal equations.
+pub type Hessian = SMatrix<f64, NUM_UNKNOWNS, NUM_UNKNOWNS>;
+type Gradient = SVector<f64, NUM_UNKNOWNS>;
+
+/// Gauss–Newton settles in four to six steps; more means a bad start.
+const MAX_ITERATIONS: usize = 60;
+/// A step that moves nothing by more than this (rad, mm/100) is the end: far below what any robot repeats.
+const SETTLED: f64 = 1e-13;
+/// Steps in mm count as rad at this lever: the distance from flange to ball, roughly.
+const LEVER_MM: f64 = 100.0;
+/// A scaled condition number beyond this leaves a direction free in double precision.
+const MAX_CONDITION: f64 = 1e13;
+
+/// A minimum.
+#[derive(Clone, Debug)]
+pub struct Minimum {
+    /// The unknowns there.
+    pub state: State,
+    /// The matrix of the normal equations there.
+    pub hessian: Hessian,
+    /// Steps taken.
+    pub num_iterations: usize,
+    /// Whether the last step was negligible.
+    pub converged: bool,
+}
+
+/// Minimises the sum of the observations from a start.
+///
+/// # Errors
+/// [`SolveError::Undetermined`] if a combination of the unknowns is free, [`SolveError::Diverged`] if numbers run away.
+pub fn minimise<'a, I>(observations: I, start: State) -> Result<Minimum, SolveError>
+where
+    I: Iterator<Item = &'a CentreObservation> + Clone,
+{
+    let mut state = start;
+    let (mut hessian, mut gradient, mut cost) = normal_equations(observations.clone(), &state);
+    let mut damping = 0.0;
+    for iteration in 1..=MAX_ITERATIONS {
+        let step = solve_scaled(&hessian, &gradient, damping)?;
+        let trial = state.stepped(&step);
+        let size = step_size(&step);
+        if !size.is_finite() {
+            return Err(SolveError::Diverged);
+        }
+        if size <= SETTLED {
+            return Ok(Minimum {
+                state: trial,
+                hessian,
+                num_iterations: iteration,
+                converged: true,
+            });
+        }
+        let (trial_hessian, trial_gradient, trial_cost) = normal_equations(observations.clone(), &trial);
+        // Costs are differences from the linearisation points; near the minimum they are equal to rounding.
+        let rounding = 1e-12 * cost.abs().max(trial_cost.abs());
+        if trial_cost <= cost + rounding || size < 1e-9 {
+            (state, hessian, gradient, cost) = (trial, trial_hessian, trial_gradient, trial_cost);
+            damping *= 0.1;
+            if damping < 1e-9 {
+                damping = 0.0;
+            }
+        } else {
+            damping = (damping * 10.0).max(1e-6);
+        }
+    }
+    Ok(Minimum {
+        state,
+        hessian,
+        num_iterations: MAX_ITERATIONS,
+        converged: false,
+    })
+}
+
+fn step_size(step: &Gradient) -> f64 {
+    let rotation = step.fixed_rows::<3>(0).norm();
+    let sensor_mm = step.fixed_rows::<3>(3).norm();
+    let ball_mm = step.fixed_rows::<3>(6).norm();
+    rotation + (sensor_mm + ball_mm) / LEVER_MM
+}
+
+fn normal_equations<'a>(
+    observations: impl Iterator<Item = &'a CentreObservation>,
+    state: &State,
+) -> (Hessian, Gradient, f64) {
+    let mut hessian = Hessian::zeros();
+    let mut gradient = Gradient::zeros();
+    let mut cost = 0.0;
+    for observation in observations {
+        let (centre, jacobian) = state.ball_in_sensor_with_jacobian(&observation.base_from_flange);
+        let offset = centre - observation.centre_in_sensor;
+        let weighted_offset = observation.information * offset;
+        let weighted_jacobian = observation.information * jacobian;
+        hessian += jacobian.transpose() * weighted_jacobian;
+        gradient += jacobian.transpose() * (observation.pull - weighted_offset);
+        cost += offset.dot(&weighted_offset) - 2.0 * observation.pull.dot(&offset);
+    }
+    (hessian, gradient, cost)
+}
+
+/// Solves `(H + damping diag H) step = gradient` with the diagonal scaled to one, so that mm and rad compare.
+fn solve_scaled(hessian: &Hessian, gradient: &Gradient, damping: f64) -> Result<Gradient, SolveError> {
+    let scale = hessian.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 0.0 });
+    let scaling = Hessian::from_diagonal(&scale);
+    let scaled = scaling * hessian * scaling + Hessian::identity() * damping;
+    let Some(factor) = scaled.cholesky() else {
+        return Err(undetermined(hessian));
+    };
+    Ok(scaling * factor.solve(&(scaling * gradient)))
+}
+
+/// The inverse of the normal equations: the covariance for unit noise.
+///
+/// # Errors
+/// [`SolveError::Undetermined`] if a combination of the unknowns is free.
+pub fn covariance_for_unit_noise(hessian: &Hessian) -> Result<Hessian, SolveError> {
+    let scale = hessian.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 0.0 });
+    let scaling = Hessian::from_diagonal(&scale);
+    let condition = scaled_condition(hessian);
+    match (scaling * hessian * scaling).cholesky() {
+        Some(factor) if condition < MAX_CONDITION => Ok(scaling * factor.inverse() * scaling),
+        _ => Err(SolveError::Undetermined { condition }),
+    }
+}
+
+fn undetermined(hessian: &Hessian) -> SolveError {
+    if hessian.iter().all(|v| v.is_finite()) {
+        SolveError::Undetermined {
+            condition: scaled_condition(hessian),
+        }
+    } else {
+        SolveError::Diverged
+    }
+}
+
+/// Condition number of the normal equations after scaling their diagonal to one.
+#[must_use]
+pub fn scaled_condition(hessian: &Hessian) -> f64 {
+    let scale = hessian.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 0.0 });
+    let scaling = Hessian::from_diagonal(&scale);
+    let eigenvalues = (scaling * hessian * scaling).symmetric_eigenvalues();
+    let least = eigenvalues.min();
+    if least > 0.0 { eigenvalues.max() / least } else { f64::INFINITY }
+}
+
+/// The part of a covariance of all unknowns that belongs to the sensor on the flange.
+#[must_use]
+pub fn sensor_block(covariance: &Hessian) -> Matrix6<f64> {
+    covariance.fixed_view::<6, 6>(0, 0).into_owned()
+}

@@ -28,9 +28,9 @@ pub enum Warning {
     },
     /// The other side of the ball fits about as well.
     SideAmbiguous {
-        /// Station.
-        label: String,
-        /// Cost with the other side over cost with this.
+        /// Stations concerned.
+        labels: Vec<String>,
+        /// Least cost with the other side over cost with this.
         ratio: f64,
     },
     /// The sections are so near the largest that y is hardly measured.

@@ -1,1 +1,4 @@
-//! x
+//! What leaves the program besides sessions: result files, and numbers with as many digits as are true.
+
+pub mod digits;
+pub mod result_file;

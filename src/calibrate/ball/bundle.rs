@@ -1,1 +1,225 @@
-pub fn solve(_p:&crate::calibrate::BallProblem)->Result<crate::calibrate::Solution,crate::calibrate::SolveError>{Err(crate::calibrate::SolveError::Diverged)}
+//! `ball-bundle`: all inlier points of all profiles of all sweeps at once.
+//!
+//! Minimises Σ (|p − s| − R)² with s the ball's centre in the sensor frame of each profile. A pass over the points gives
+//! nine sums a profile; between passes the quadratic they make is minimised exactly. The weight of a profile is that of
+//! its points across the section, (R/l)²/σ², with the noise of its pose integrated out.
+//!
+//! # Source
+//! Ours; the structure is that of a bundle adjustment with one three-parameter block a profile.
+
+use crate::calibrate::observation::{CentreObservation, State};
+use crate::calibrate::rotation_start::PoseGeometry;
+use crate::calibrate::solver::{Minimum, minimise};
+use crate::calibrate::{BallProblem, Method, Reading, Solution, SolveError, Station, Warning};
+use crate::fit::ArcFit;
+use crate::geometry::{Mat3, Rigid, Vec3, stats};
+
+use super::assemble::{Found, StationFacts, first_pose};
+use super::pose_noise::{PoseNoise, marginalised, residual_pull};
+use super::profile_sums::profile_sums;
+use super::{MIN_STATIONS, fixed_point, max_arc};
+
+/// Passes over the points. The start is near, so three or four settle it.
+const MAX_PASSES: usize = 20;
+/// Movements below this (mm, or mm at 100 mm of lever) between passes are the end.
+const SETTLED_MM: f64 = 1e-11;
+/// Noise below this (mm) is rounding; weights are taken as of this noise.
+const LEAST_POINT_STD_MM: f64 = 1e-7;
+
+/// A profile that takes part.
+#[derive(Clone, Copy, Debug)]
+struct UsedProfile<'a> {
+    station: usize,
+    base_from_flange: &'a Rigid,
+    arc: &'a ArcFit,
+    /// Weight of a squared residual, 1/mm².
+    weight: f64,
+}
+
+/// Solves by all points.
+///
+/// # Errors
+/// [`SolveError`] with fewer than four stations with a profile, or if they leave a direction free.
+pub fn solve(problem: &BallProblem) -> Result<Solution, SolveError> {
+    let mut warnings = Vec::new();
+    let stations = stations_with_profiles(problem, &mut warnings)?;
+    let poses_of_stations: Vec<Rigid> = stations.iter().map(|station| *first_pose(station)).collect();
+    let poses = PoseGeometry::new(&poses_of_stations)?;
+    let start = start(problem, &mut warnings)?;
+    let profiles = used_profiles(&stations, problem.radius_mm);
+    let bundled = bundle(&profiles, problem, start)?;
+    let variance_factor = variance_factor(&bundled, stations.len());
+    let facts = stations
+        .into_iter()
+        .map(|station| StationFacts {
+            station,
+            side_cost_ratio: None,
+            ball_in_sensor_std_mm: None,
+            sweep: None,
+        })
+        .collect();
+    Found {
+        method: Method::BallBundle,
+        problem,
+        stations: facts,
+        observations: bundled.observations,
+        minimum: bundled.minimum,
+        variance_factor,
+        // A station blind along y still knows that the ball is not further off than its radius.
+        prior_information: 1.0 / (problem.radius_mm * problem.radius_mm),
+        poses,
+        warnings,
+    }
+    .into_solution()
+}
+
+fn stations_with_profiles<'a>(
+    problem: &'a BallProblem,
+    warnings: &mut Vec<Warning>,
+) -> Result<Vec<&'a Station>, SolveError> {
+    let is_arc = |reading: &Reading| matches!(reading, Reading::Arc(_));
+    let (used, skipped): (Vec<&Station>, Vec<&Station>) =
+        problem.stations.iter().partition(|station| station.captures.iter().any(|capture| is_arc(&capture.reading)));
+    if used.len() < MIN_STATIONS {
+        return Err(SolveError::TooFewProfileStations {
+            found: used.len(),
+            needed: MIN_STATIONS,
+        });
+    }
+    warnings.extend(skipped.into_iter().map(|station| Warning::StationSkipped {
+        label: station.label.clone(),
+        found: 0,
+        needed: 1,
+    }));
+    Ok(used)
+}
+
+/// The whole curves where there are sweeps, one section a station otherwise; doubts about the sides carry over.
+fn start(problem: &BallProblem, warnings: &mut Vec<Warning>) -> Result<State, SolveError> {
+    let solution = match max_arc::solve(problem) {
+        Ok(solution) => solution,
+        Err(_) => {
+            let solution = fixed_point::solve(problem)?;
+            let doubts = |warning: &&Warning| matches!(warning, Warning::SideAmbiguous { .. } | Warning::BlindInY { .. });
+            warnings.extend(solution.warnings.iter().filter(doubts).cloned());
+            solution
+        }
+    };
+    Ok(State {
+        flange_from_sensor: *solution.flange_from_sensor.rigid(),
+        ball_in_base: solution.ball_in_base_mm,
+    })
+}
+
+fn used_profiles<'a>(stations: &[&'a Station], ball_radius_mm: f64) -> Vec<UsedProfile<'a>> {
+    let arcs = || {
+        stations.iter().enumerate().flat_map(|(station_idx, station)| {
+            station.captures.iter().filter_map(move |capture| match &capture.reading {
+                Reading::Arc(arc) => Some((station_idx, capture.base_from_flange.rigid(), arc.as_ref())),
+                Reading::Refused(_) | Reading::Point(_) => None,
+            })
+        })
+    };
+    // One noise for all: a sensor does not change from profile to profile, and a single short arc estimates it badly.
+    let point_std_mm = stats::rms(arcs().map(|(_, _, arc)| arc.point_std_mm)).max(LEAST_POINT_STD_MM);
+    arcs()
+        .map(|(station, base_from_flange, arc)| {
+            // Noise in the laser plane acts on |p − s| with the factor l/R.
+            let section_part = (arc.circle.radius_mm / ball_radius_mm).min(1.0);
+            UsedProfile {
+                station,
+                base_from_flange,
+                arc,
+                weight: (section_part * point_std_mm).powi(-2),
+            }
+        })
+        .collect()
+}
+
+#[derive(Clone, Debug)]
+struct Bundled {
+    observations: Vec<CentreObservation>,
+    minimum: Minimum,
+}
+
+/// Passes over the points until nothing moves: first with the points' weights alone, then with the pose noise in.
+fn bundle(profiles: &[UsedProfile<'_>], problem: &BallProblem, start: State) -> Result<Bundled, SolveError> {
+    let mut state = start;
+    let mut noise = PoseNoise::stated(&problem.noise);
+    let mut latest = None;
+    for pass in 1..=MAX_PASSES {
+        let by_points = linearised(profiles, &state, problem.radius_mm);
+        let noise_now = match noise {
+            Some(noise) => noise,
+            // The first pass sees the offsets of the start, so the noise is estimated from the second on, and kept from
+            // the fourth so that the passes can settle.
+            None if pass == 1 => PoseNoise {
+                position_std_mm: 0.0,
+                orientation_std_rad: 0.0,
+            },
+            None => PoseNoise::estimated(&by_points, &state),
+        };
+        if pass >= 4 {
+            noise = Some(noise_now);
+        }
+        let observations: Vec<CentreObservation> = by_points
+            .iter()
+            .map(|observation| marginalised(observation, &state, &noise_now))
+            .collect::<Result<_, _>>()?;
+        let mut minimum = minimise(observations.iter(), state)?;
+        let change = state.flange_from_sensor.inverse() * minimum.state.flange_from_sensor;
+        let moved = change.translation.vector.norm()
+            + 100.0 * change.rotation.angle()
+            + (state.ball_in_base - minimum.state.ball_in_base).norm();
+        state = minimum.state;
+        let settled = moved < SETTLED_MM && pass >= 5;
+        minimum.converged &= settled || moved < 1e-6;
+        minimum.num_iterations = pass;
+        latest = Some(Bundled { observations, minimum });
+        if settled {
+            break;
+        }
+    }
+    latest.ok_or(SolveError::Diverged)
+}
+
+fn linearised(profiles: &[UsedProfile<'_>], state: &State, ball_radius_mm: f64) -> Vec<CentreObservation> {
+    profiles
+        .iter()
+        .map(|profile| {
+            let centre = state.ball_in_sensor(profile.base_from_flange);
+            let sums = profile_sums(profile.arc, centre, ball_radius_mm);
+            CentreObservation {
+                station: profile.station,
+                base_from_flange: *profile.base_from_flange,
+                centre_in_sensor: centre,
+                information: sums.information * profile.weight,
+                pull: sums.pull * profile.weight,
+            }
+        })
+        .collect()
+}
+
+/// By how much the stations scatter more than their stated noise explains, at least 1; `None` with nothing left over.
+///
+/// Errors common to a sweep show between stations only, so whole stations are the sample.
+fn variance_factor(bundled: &Bundled, num_stations: usize) -> Option<f64> {
+    let state = &bundled.minimum.state;
+    let mut chi_square = 0.0;
+    for station in 0..num_stations {
+        let (mut information, mut pull) = (Mat3::zeros(), Vec3::zeros());
+        for observation in bundled.observations.iter().filter(|observation| observation.station == station) {
+            let rotation =
+                (observation.base_from_flange.rotation * state.flange_from_sensor.rotation).to_rotation_matrix();
+            information += rotation.matrix() * observation.information * rotation.matrix().transpose();
+            pull += rotation * residual_pull(observation, state);
+        }
+        let ridge = Mat3::identity() * (1e-12 * information.trace());
+        if let Some(factor) = (information + ridge).cholesky() {
+            chi_square += pull.dot(&factor.solve(&pull));
+        }
+    }
+    let freedom = (3 * num_stations).checked_sub(9).filter(|freedom| *freedom > 0)?;
+    #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 stations")]
+    Some((chi_square / freedom as f64).max(1.0))
+}

@@ -4,3 +4,6 @@ pub mod arcs;
 pub mod compare;
 pub mod methods;
 pub mod warnings;
+
+pub use methods::*;
+pub use warnings::*;

@@ -15,8 +15,10 @@ pub fn warning_message(warning: &Warning) -> String {
         Warning::NearlyOneAxis { ratio, weak_axis_in_flange: [x, y, z] } => format!(
             "The rotations are almost about one axis: about ({x:.2}, {y:.2}, {z:.2}) in the flange they are {ratio:.0} times smaller."
         ),
-        Warning::SideAmbiguous { label, ratio } => format!(
-            "The side of the ball at station {label} is uncertain: the other side costs only {ratio:.1} times as much."
+        Warning::SideAmbiguous { labels, ratio } => format!(
+            "Station{} {}: the side of the ball is uncertain, the other side costs only {ratio:.1} times as much.",
+            if labels.len() == 1 { "" } else { "s" },
+            labels.join(", ")
         ),
         Warning::BlindInY { labels, std_y_mm, std_xz_mm } => format!(
             "Station{} {}: the section is so near the largest that y is known to ±{std_y_mm:.3} mm only, against ±{std_xz_mm:.3} mm in x and z.",

@@ -1,0 +1,114 @@
+//! The robot's noise moves all points of a profile together: it is common to them and must be weighed as such.
+//!
+//! Per profile, with the information W from its points and the covariance S of the ball's centre by the pose, the centre
+//! is known with (W⁻¹ + S)⁻¹ = W (I + S W)⁻¹. In this form a profile that is blind in a direction needs no inverse.
+
+use crate::calibrate::observation::{CentreObservation, State};
+use crate::calibrate::{Noise, SolveError};
+use crate::geometry::so3::hat;
+use crate::geometry::{Mat3, Vec3};
+
+/// Standard deviations of position (mm) and orientation (rad) about each axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct PoseNoise {
+    pub position_std_mm: f64,
+    pub orientation_std_rad: f64,
+}
+
+impl PoseNoise {
+    /// The noise that the user states, if any.
+    pub fn stated(noise: &Noise) -> Option<Self> {
+        if noise.position_std_mm.is_none() && noise.orientation_std_rad.is_none() {
+            return None;
+        }
+        Some(Self {
+            position_std_mm: noise.position_std_mm.unwrap_or(0.0),
+            orientation_std_rad: noise.orientation_std_rad.unwrap_or(0.0),
+        })
+    }
+
+    /// The noise, as a position noise, for which the profiles' centres scatter as much as they are expected to: the
+    /// variance component by the method of moments.
+    pub fn estimated(observations: &[CentreObservation], state: &State) -> Self {
+        /// Arms do not repeat better than this, mm; below it the search may stop.
+        const LEAST_MM: f64 = 1e-6;
+        /// Worse than this is no noise, mm.
+        const MOST_MM: f64 = 30.0;
+        let noise = |position_std_mm: f64| Self {
+            position_std_mm,
+            orientation_std_rad: 0.0,
+        };
+        #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 profiles")]
+        let freedom = (3 * observations.len()) as f64 - 9.0;
+        let excess = |std_mm: f64| chi_square(observations, state, &noise(std_mm)) - freedom;
+        if freedom <= 0.0 || excess(LEAST_MM) <= 0.0 {
+            return noise(0.0);
+        }
+        let (mut low, mut high) = (LEAST_MM.ln(), MOST_MM.ln());
+        // The sum falls with the noise: halve the interval until the figure is good to a per mille.
+        while high - low > 1e-3 {
+            let middle = 0.5 * (low + high);
+            if excess(middle.exp()) > 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        noise((0.5 * (low + high)).exp())
+    }
+
+    /// Covariance of the ball's centre in the sensor frame by this noise at one pose, mm².
+    ///
+    /// The orientation acts with the lever from the flange to the ball.
+    fn centre_covariance(&self, observation: &CentreObservation, state: &State) -> Mat3 {
+        let position = Mat3::identity() * (self.position_std_mm * self.position_std_mm);
+        let ball_in_flange =
+            observation.base_from_flange.inverse_transform_point(&state.ball_in_base.into()).coords;
+        let rotation = state.flange_from_sensor.rotation.to_rotation_matrix();
+        let lever = rotation.matrix().transpose() * hat(ball_in_flange);
+        position + lever * lever.transpose() * (self.orientation_std_rad * self.orientation_std_rad)
+    }
+}
+
+/// The same observation with the pose noise integrated out.
+///
+/// # Errors
+/// [`SolveError::Diverged`] if the numbers are not finite.
+pub(super) fn marginalised(
+    observation: &CentreObservation,
+    state: &State,
+    noise: &PoseNoise,
+) -> Result<CentreObservation, SolveError> {
+    let covariance = noise.centre_covariance(observation, state);
+    let damp = (Mat3::identity() + observation.information * covariance)
+        .try_inverse()
+        .ok_or(SolveError::Diverged)?;
+    let information = damp * observation.information;
+    Ok(CentreObservation {
+        information: (information + information.transpose()) * 0.5,
+        pull: damp * observation.pull,
+        ..observation.clone()
+    })
+}
+
+/// Σ eᵀ (W⁻¹ + S)⁻¹ e over the profiles, e the offset of a profile's own optimum from the common ball: as many as
+/// degrees of freedom are expected.
+fn chi_square(observations: &[CentreObservation], state: &State, noise: &PoseNoise) -> f64 {
+    observations
+        .iter()
+        .filter_map(|observation| {
+            let pull = residual_pull(observation, state);
+            let w = observation.information;
+            // eᵀ (W⁻¹ + S)⁻¹ e with e = W⁻¹ g is gᵀ (W + W S W)⁻¹ g.
+            let matrix = w + w * noise.centre_covariance(observation, state) * w;
+            let ridge = Mat3::identity() * (1e-13 * matrix.trace());
+            (matrix + ridge).cholesky().map(|factor| pull.dot(&factor.solve(&pull)))
+        })
+        .sum()
+}
+
+/// Half the negative gradient of an observation at the state.
+pub(super) fn residual_pull(observation: &CentreObservation, state: &State) -> Vec3 {
+    let offset = state.ball_in_sensor(&observation.base_from_flange) - observation.centre_in_sensor;
+    observation.pull - observation.information * offset
+}

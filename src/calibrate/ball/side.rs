@@ -1,0 +1,199 @@
+//! On which side of the laser plane is the ball? One section cannot tell; all stations together can.
+//!
+//! From all orientations and both global signs the sides and the rotation are improved in turn; then single stations
+//! are flipped while the cost falls. From one start alone this sticks in a wrong assignment.
+
+use crate::calibrate::rotation_start::{PoseGeometry, RotationMinimum, octahedral_rotations};
+use crate::calibrate::{Side, SideChoice};
+use crate::geometry::{Rigid, Vec3};
+
+/// A cost below this a station is rounding, mm².
+const ROUNDING: f64 = 1e-16;
+/// Beyond this many stations every single flip would take longer than a frame; turns of all stations do instead.
+const MAX_SINGLE_FLIPS: usize = 64;
+
+/// One station's two candidates, `(x1, ±|y|, z1)`, and what the user says.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SideCandidate {
+    pub x_mm: f64,
+    pub size_y_mm: f64,
+    pub z_mm: f64,
+    pub choice: SideChoice,
+}
+
+impl SideCandidate {
+    pub fn centre(&self, side: Side) -> Vec3 {
+        Vec3::new(self.x_mm, side.sign() * self.size_y_mm, self.z_mm)
+    }
+
+    const fn is_open(&self) -> bool {
+        matches!(self.choice, SideChoice::Auto)
+    }
+}
+
+/// The best assignment.
+#[derive(Clone, Debug)]
+pub(super) struct ResolvedSides {
+    pub sides: Vec<Side>,
+    /// Cost of the best assignment with this station on the other side, over the best cost; `None` where given.
+    pub cost_ratios: Vec<Option<f64>>,
+    pub minimum: RotationMinimum,
+}
+
+#[derive(Clone, Debug)]
+struct Assignment {
+    sides: Vec<Side>,
+    minimum: RotationMinimum,
+}
+
+struct Resolver<'a> {
+    poses: &'a PoseGeometry,
+    base_from_flange: &'a [Rigid],
+    candidates: &'a [SideCandidate],
+}
+
+/// Finds the sides that fit best.
+pub(super) fn resolve_sides(
+    poses: &PoseGeometry,
+    base_from_flange: &[Rigid],
+    candidates: &[SideCandidate],
+) -> ResolvedSides {
+    let resolver = Resolver {
+        poses,
+        base_from_flange,
+        candidates,
+    };
+    let mut finals: Vec<Assignment> = Vec::new();
+    for global in [Side::Plus, Side::Minus] {
+        let sides: Vec<Side> = candidates
+            .iter()
+            .map(|candidate| match candidate.choice {
+                SideChoice::Auto => global,
+                SideChoice::Given(side) => side,
+            })
+            .collect();
+        let minimum = poses.reduced(&resolver.centres(&sides)).best_minimum();
+        resolver.keep_new(&mut finals, Assignment { sides, minimum });
+    }
+    let all_fit = finals.iter().any(|assignment| resolver.fits_well(assignment));
+    if candidates.iter().any(SideCandidate::is_open) && !all_fit {
+        let start = finals[0].sides.clone();
+        for rotation in octahedral_rotations() {
+            let minimum = poses.reduced(&resolver.centres(&start)).descend(rotation);
+            resolver.keep_new(
+                &mut finals,
+                Assignment {
+                    sides: start.clone(),
+                    minimum,
+                },
+            );
+        }
+    }
+    finals.sort_by(|a, b| a.minimum.cost.total_cmp(&b.minimum.cost));
+    let others = finals.split_off(1);
+    let best = finals.swap_remove(0);
+    let cost_ratios = resolver.cost_ratios(&best, &others);
+    ResolvedSides {
+        sides: best.sides,
+        cost_ratios,
+        minimum: best.minimum,
+    }
+}
+
+impl Resolver<'_> {
+    fn centres(&self, sides: &[Side]) -> Vec<Vec3> {
+        self.candidates.iter().zip(sides).map(|(candidate, side)| candidate.centre(*side)).collect()
+    }
+
+    /// Whether the residual is a small part of the sections' distance from the ball's centre: then no other assignment
+    /// can come near.
+    fn fits_well(&self, assignment: &Assignment) -> bool {
+        let size: f64 = self.candidates.iter().map(|candidate| candidate.size_y_mm * candidate.size_y_mm).sum();
+        assignment.minimum.cost < 1e-3 * size
+    }
+
+    fn keep_new(&self, finals: &mut Vec<Assignment>, start: Assignment) {
+        let settled = self.flip_singly(self.turn_all(start));
+        match finals.iter_mut().find(|known| known.sides == settled.sides) {
+            Some(known) if known.minimum.cost <= settled.minimum.cost => {}
+            Some(known) => *known = settled,
+            None => finals.push(settled),
+        }
+    }
+
+    fn solve_near(&self, sides: &[Side], near: &RotationMinimum) -> RotationMinimum {
+        self.poses.reduced(&self.centres(sides)).descend(near.flange_from_sensor)
+    }
+
+    /// Gives every open station the side that lies nearer to the ball, and solves again, until nothing changes.
+    fn turn_all(&self, mut assignment: Assignment) -> Assignment {
+        for _ in 0..20 {
+            let reduced = self.poses.reduced(&self.centres(&assignment.sides));
+            let state = reduced.state(assignment.minimum.flange_from_sensor);
+            let sides: Vec<Side> = self
+                .candidates
+                .iter()
+                .zip(self.base_from_flange)
+                .zip(&assignment.sides)
+                .map(|((candidate, pose), side)| {
+                    if !candidate.is_open() {
+                        return *side;
+                    }
+                    if state.ball_in_sensor(pose).y < 0.0 { Side::Minus } else { Side::Plus }
+                })
+                .collect();
+            if sides == assignment.sides {
+                break;
+            }
+            let minimum = self.solve_near(&sides, &assignment.minimum);
+            if minimum.cost >= assignment.minimum.cost {
+                break;
+            }
+            assignment = Assignment { sides, minimum };
+        }
+        assignment
+    }
+
+    /// Flips single stations while the cost falls.
+    fn flip_singly(&self, mut assignment: Assignment) -> Assignment {
+        if self.candidates.len() > MAX_SINGLE_FLIPS || self.fits_well(&assignment) {
+            return assignment;
+        }
+        loop {
+            let best = (0..self.candidates.len())
+                .filter(|idx| self.candidates[*idx].is_open())
+                .map(|idx| self.flipped(&assignment, idx))
+                .min_by(|a, b| a.minimum.cost.total_cmp(&b.minimum.cost));
+            match best {
+                Some(flipped) if flipped.minimum.cost < assignment.minimum.cost => assignment = flipped,
+                _ => return assignment,
+            }
+        }
+    }
+
+    fn flipped(&self, assignment: &Assignment, idx: usize) -> Assignment {
+        let mut sides = assignment.sides.clone();
+        sides[idx] = sides[idx].flipped();
+        let minimum = self.solve_near(&sides, &assignment.minimum);
+        Assignment { sides, minimum }
+    }
+
+    fn cost_ratios(&self, best: &Assignment, others: &[Assignment]) -> Vec<Option<f64>> {
+        #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 stations")]
+        let floor = ROUNDING * self.candidates.len() as f64;
+        self.candidates
+            .iter()
+            .enumerate()
+            .map(|(idx, candidate)| {
+                candidate.is_open().then(|| {
+                    let by_others = others
+                        .iter()
+                        .filter(|other| other.sides[idx] != best.sides[idx])
+                        .map(|other| other.minimum.cost);
+                    let by_flip = self.flipped(best, idx).minimum.cost;
+                    by_others.fold(by_flip, f64::min).max(floor) / best.minimum.cost.max(floor)
+                })
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,146 @@
+//! The result file, as `solve --json` prints it. Other programs rely on its names.
+
+use serde_json::{Map, Value, json};
+
+use crate::calibrate::{MethodResult, Mount, Solution, StationSolution, Uncertainty, Warning};
+use crate::geometry::{Frame, Transform, Vec3};
+use crate::text;
+
+/// The format's name.
+pub const FORMAT: &str = "handeye-result";
+/// The format's version.
+pub const VERSION: u32 = 1;
+
+/// The results of a session as a JSON document.
+#[must_use]
+pub fn result_file(session_name: &str, results: &[MethodResult]) -> Value {
+    json!({
+        "format": FORMAT,
+        "version": VERSION,
+        "session": session_name,
+        "methods": results.iter().map(method_entry).collect::<Vec<_>>(),
+    })
+}
+
+fn method_entry(result: &MethodResult) -> Value {
+    match &result.outcome {
+        Ok(solution) => solution_entry(solution),
+        Err(error) => json!({
+            "method": result.method.id(),
+            "status": "failed",
+            "reason": error.to_string(),
+        }),
+    }
+}
+
+fn solution_entry(solution: &Solution) -> Value {
+    let names = Names::of(solution.mount);
+    let mut entry = Map::new();
+    entry.insert("method".to_owned(), json!(solution.method.id()));
+    entry.insert("status".to_owned(), json!("ok"));
+    entry.insert(names.sensor.to_owned(), transform(&solution.flange_from_sensor));
+    entry.insert(names.target.to_owned(), vector(solution.ball_in_base_mm));
+    entry.insert(
+        "scatter_mm".to_owned(),
+        json!({ "rms": solution.scatter.rms_mm, "max": solution.scatter.max_mm }),
+    );
+    entry.insert(
+        "leave_one_out_mm".to_owned(),
+        solution
+            .leave_one_out
+            .map_or(Value::Null, |left_out| json!({ "rms": left_out.rms_mm, "max": left_out.max_mm })),
+    );
+    entry.insert(
+        "uncertainty".to_owned(),
+        solution.uncertainty.as_ref().map_or(Value::Null, uncertainty),
+    );
+    entry.insert("rotation_span_deg".to_owned(), json!(solution.rotation_span_rad.to_degrees()));
+    entry.insert(
+        "stations".to_owned(),
+        solution.stations.iter().map(|station| station_entry(station, &names)).collect(),
+    );
+    entry.insert("warnings".to_owned(), solution.warnings.iter().map(warning).collect());
+    Value::Object(entry)
+}
+
+/// The names that depend on where the sensor is mounted.
+struct Names {
+    sensor: &'static str,
+    target: &'static str,
+}
+
+impl Names {
+    const fn of(mount: Mount) -> Self {
+        match mount {
+            Mount::OnFlange => Self {
+                sensor: "flange_from_sensor",
+                target: "target_in_base_mm",
+            },
+            Mount::Fixed => Self {
+                sensor: "base_from_sensor",
+                target: "target_in_flange_mm",
+            },
+        }
+    }
+}
+
+fn transform<Dst: Frame, Src: Frame>(transform: &Transform<Dst, Src>) -> Value {
+    let matrix = transform.matrix();
+    let rows: Vec<Vec<f64>> = (0..4).map(|row| (0..4).map(|column| matrix[(row, column)]).collect()).collect();
+    json!({
+        "translation_mm": vector(transform.translation_mm()),
+        "quaternion_wxyz": transform.quaternion_wxyz(),
+        "matrix": rows,
+    })
+}
+
+fn vector(vector: Vec3) -> Value {
+    json!([vector.x, vector.y, vector.z])
+}
+
+fn uncertainty(uncertainty: &Uncertainty) -> Value {
+    let covariance: Vec<Vec<f64>> =
+        uncertainty.covariance.row_iter().map(|row| row.iter().copied().collect()).collect();
+    json!({
+        "translation_std_mm": vector(uncertainty.translation_std_mm),
+        "rotation_std_deg": vector(uncertainty.rotation_std_rad.map(f64::to_degrees)),
+        "workspace_point_std_mm": uncertainty.workspace_point_std_mm,
+        "reference_point_in_sensor_mm": vector(uncertainty.reference_point_in_sensor_mm),
+        "covariance": covariance,
+    })
+}
+
+fn station_entry(station: &StationSolution, names: &Names) -> Value {
+    let mut entry = Map::new();
+    entry.insert("label".to_owned(), json!(station.label));
+    entry.insert("used".to_owned(), json!(true));
+    entry.insert("side".to_owned(), json!(station.side.symbol()));
+    entry.insert("side_cost_ratio".to_owned(), json!(station.side_cost_ratio));
+    entry.insert("target_in_sensor_mm".to_owned(), vector(station.ball_in_sensor_mm));
+    entry.insert(names.target.to_owned(), vector(station.ball_in_base_mm));
+    entry.insert("error_from_first_mm".to_owned(), vector(station.error_from_first_mm));
+    entry.insert("error_from_mean_mm".to_owned(), vector(station.error_from_mean_mm));
+    entry.insert("leave_one_out_mm".to_owned(), json!(station.leave_one_out_mm));
+    if let Some(sweep) = &station.sweep {
+        entry.insert(
+            "sweep".to_owned(),
+            json!({
+                "peak_mm": sweep.peak_mm,
+                "peak_std_mm": sweep.peak_std_mm,
+                "published_stop_mm": sweep.published_stop_mm,
+                "published_stop_std_mm": sweep.published_stop_std_mm,
+                "travel_off_normal_deg": sweep.travel_off_normal_rad.to_degrees(),
+                "steps": sweep.points.len(),
+            }),
+        );
+    }
+    Value::Object(entry)
+}
+
+fn warning(warning: &Warning) -> Value {
+    json!({
+        "code": warning.code(),
+        "message": text::warning_message(warning),
+        "remedy": text::warning_remedy(warning),
+    })
+}
