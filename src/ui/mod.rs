@@ -5,6 +5,7 @@
 
 pub mod arcs;
 pub mod charts;
+pub mod compare;
 pub mod figures;
 pub mod theme;
 pub mod widgets;
