@@ -1,1 +1,225 @@
-//! x
+//! What is odd about a session that is otherwise as the format has it: things to look at before solving.
+
+use crate::geometry::Rigid;
+
+use super::{Capture, Reading, Session, Station, Target};
+
+/// Fewer stations than this do not determine a calibration from a ball.
+pub const MIN_STATIONS: usize = 4;
+/// Poses nearer than this in position and ...
+pub const TWIN_DISTANCE_MM: f64 = 0.5;
+/// ... this in orientation say the same thing twice.
+pub const TWIN_ANGLE_DEG: f64 = 0.5;
+/// No arm reaches further; beyond it the unit was hardly millimetres.
+pub const REACH_MM: f64 = 10_000.0;
+/// Commanded step and moved distance may differ by this much and a tenth of the step.
+pub const STEP_TOLERANCE_MM: f64 = 0.1;
+const STEP_TOLERANCE_RATIO: f64 = 0.1;
+
+/// Something to look at in a session; the wording is on the floor above.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Finding {
+    /// Quaternions in the file were rounded so much that they had to be normalised.
+    QuaternionsNormalised {
+        /// How many.
+        num_poses: usize,
+        /// The one furthest off unit norm.
+        worst_path: String,
+        /// Its norm.
+        worst_norm: f64,
+    },
+    /// There are no stations yet.
+    NoStations,
+    /// Too few stations are enabled.
+    FewStations {
+        /// How many are enabled.
+        num_enabled: usize,
+        /// How many are needed.
+        needed: usize,
+    },
+    /// Two stations measured from the same pose.
+    TwinStations {
+        /// The first.
+        label: String,
+        /// The second.
+        twin_label: String,
+        /// Distance of the two, mm.
+        distance_mm: f64,
+        /// Angle between the two, degrees.
+        angle_deg: f64,
+    },
+    /// A profile without a single valid point.
+    EmptyProfile {
+        /// Its station.
+        label: String,
+        /// Which capture, from 0.
+        capture_idx: usize,
+    },
+    /// The robot moved by another distance than was commanded.
+    StepDiffersFromPose {
+        /// The station.
+        label: String,
+        /// The capture that was stepped to, from 0: the one where they differ most.
+        capture_idx: usize,
+        /// The commanded step, mm.
+        step_mm: f64,
+        /// The distance between the recorded poses, mm.
+        moved_mm: f64,
+    },
+    /// A pose further away than any arm reaches.
+    FarPose {
+        /// The station.
+        label: String,
+        /// Which capture, from 0: the farthest.
+        capture_idx: usize,
+        /// Its distance from the base, mm.
+        distance_mm: f64,
+    },
+    /// Noise figures are missing, so they will be estimated.
+    NoiseNotGiven {
+        /// The fields, as the file would name them.
+        fields: Vec<&'static str>,
+    },
+}
+
+impl Finding {
+    /// A stable name for other programs.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        match self {
+            Self::QuaternionsNormalised { .. } => "quaternions-normalised",
+            Self::NoStations => "no-stations",
+            Self::FewStations { .. } => "few-stations",
+            Self::TwinStations { .. } => "twin-stations",
+            Self::EmptyProfile { .. } => "empty-profile",
+            Self::StepDiffersFromPose { .. } => "step-differs-from-pose",
+            Self::FarPose { .. } => "far-pose",
+            Self::NoiseNotGiven { .. } => "noise-not-given",
+        }
+    }
+
+    /// The station that it is about, if it is about one.
+    #[must_use]
+    pub fn station_label(&self) -> Option<&str> {
+        match self {
+            Self::TwinStations { label, .. }
+            | Self::EmptyProfile { label, .. }
+            | Self::StepDiffersFromPose { label, .. }
+            | Self::FarPose { label, .. } => Some(label),
+            Self::QuaternionsNormalised { .. }
+            | Self::NoStations
+            | Self::FewStations { .. }
+            | Self::NoiseNotGiven { .. } => None,
+        }
+    }
+}
+
+/// What is odd about a session: first the session as a whole, then its stations in order.
+#[must_use]
+pub fn findings(session: &Session) -> Vec<Finding> {
+    if matches!(session.target, Target::Rgbd { .. }) {
+        return Vec::new();
+    }
+    let mut findings = Vec::new();
+    let num_enabled = session.stations.iter().filter(|station| station.enabled).count();
+    if session.stations.is_empty() {
+        findings.push(Finding::NoStations);
+    } else if num_enabled < MIN_STATIONS {
+        findings.push(Finding::FewStations {
+            num_enabled,
+            needed: MIN_STATIONS,
+        });
+    }
+    findings.extend(noise_not_given(session));
+    for (station_idx, station) in session.stations.iter().enumerate() {
+        findings.extend(empty_profiles(station));
+        findings.extend(far_pose(station));
+        findings.extend(differing_step(station));
+        if station.enabled {
+            findings.extend(twins(station, &session.stations[station_idx + 1..]));
+        }
+    }
+    findings
+}
+
+fn noise_not_given(session: &Session) -> Option<Finding> {
+    let has_profiles = session
+        .stations
+        .iter()
+        .flat_map(|station| &station.captures)
+        .any(|capture| matches!(capture.reading, Reading::Profile(_)));
+    let fields: Vec<&'static str> = [
+        ("sensor.profile_std_mm", has_profiles && session.sensor.profile_std_mm.is_none()),
+        ("robot.position_std_mm", session.robot.position_std_mm.is_none()),
+        ("robot.orientation_std_deg", session.robot.orientation_std_deg.is_none()),
+    ]
+    .into_iter()
+    .filter_map(|(field, is_missing)| is_missing.then_some(field))
+    .collect();
+    (!fields.is_empty() && !session.stations.is_empty()).then_some(Finding::NoiseNotGiven { fields })
+}
+
+fn empty_profiles(station: &Station) -> impl Iterator<Item = Finding> + '_ {
+    station.captures.iter().enumerate().filter_map(|(capture_idx, capture)| match &capture.reading {
+        Reading::Profile(profile) if profile.valid_points().next().is_none() => Some(Finding::EmptyProfile {
+            label: station.label.clone(),
+            capture_idx,
+        }),
+        _ => None,
+    })
+}
+
+fn far_pose(station: &Station) -> Option<Finding> {
+    let distance_mm = |capture: &Capture| capture.base_from_flange.translation_mm().norm();
+    station
+        .captures
+        .iter()
+        .enumerate()
+        .map(|(capture_idx, capture)| (capture_idx, distance_mm(capture)))
+        .filter(|(_, distance_mm)| *distance_mm > REACH_MM)
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .map(|(capture_idx, distance_mm)| Finding::FarPose {
+            label: station.label.clone(),
+            capture_idx,
+            distance_mm,
+        })
+}
+
+fn differing_step(station: &Station) -> Option<Finding> {
+    station
+        .captures
+        .windows(2)
+        .enumerate()
+        .filter_map(|(idx, pair)| {
+            let step_mm = pair[1].step_mm?;
+            let moved =
+                pair[1].base_from_flange.translation_mm() - pair[0].base_from_flange.translation_mm();
+            Some((idx + 1, step_mm, moved.norm()))
+        })
+        .map(|(capture_idx, step_mm, moved_mm)| (capture_idx, step_mm, moved_mm, (step_mm.abs() - moved_mm).abs()))
+        .filter(|(_, step_mm, _, difference)| *difference > STEP_TOLERANCE_MM + STEP_TOLERANCE_RATIO * step_mm.abs())
+        .max_by(|a, b| a.3.total_cmp(&b.3))
+        .map(|(capture_idx, step_mm, moved_mm, _)| Finding::StepDiffersFromPose {
+            label: station.label.clone(),
+            capture_idx,
+            step_mm,
+            moved_mm,
+        })
+}
+
+/// Stations after this one with the same pose. For the plate and the point twins are as useless as for the ball.
+fn twins<'s>(station: &'s Station, later: &'s [Station]) -> impl Iterator<Item = Finding> + 's {
+    let first_pose = |station: &Station| station.captures.first().map(|capture| *capture.base_from_flange.rigid());
+    let pose: Option<Rigid> = first_pose(station);
+    later.iter().filter(|other| other.enabled).filter_map(move |other| {
+        let (pose, other_pose) = (pose?, first_pose(other)?);
+        let distance_mm = (pose.translation.vector - other_pose.translation.vector).norm();
+        let angle_deg = pose.rotation.angle_to(&other_pose.rotation).to_degrees();
+        (distance_mm < TWIN_DISTANCE_MM && angle_deg < TWIN_ANGLE_DEG).then(|| Finding::TwinStations {
+            label: station.label.clone(),
+            twin_label: other.label.clone(),
+            distance_mm,
+            angle_deg,
+        })
+    })
+}

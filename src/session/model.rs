@@ -8,6 +8,9 @@ use crate::calibrate::{Mount, SideChoice};
 use crate::geometry::{Base, Flange, PoseConvention, Profile, Sensor as SensorFrame, Transform, Vec3};
 
 /// Fields of a JSON object that we do not know; they survive load and save.
+///
+/// Those of an object without a type of its own (a pose, a profile, the target) are kept by the type around it, as an
+/// object under that field's name: a capture's `"base_from_flange"` holds what stood there beside the pose.
 pub type UnknownFields = Map<String, Value>;
 
 /// The robot as the file describes it.
@@ -122,7 +125,7 @@ pub struct Station {
 pub struct Published {
     /// Printed ball centres in the base, one a station, mm.
     pub ball_in_base_mm: Vec<Vec3>,
-    /// Printed error columns, one a station, mm; empty if none were printed.
+    /// Printed error columns, one a station, mm, misprints included; empty if none were printed.
     pub error_from_first_mm: Vec<Vec3>,
     /// The table's title and source.
     pub caption: String,

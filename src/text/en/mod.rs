@@ -1,6 +1,7 @@
 //! English.
 
 pub mod arcs;
+pub mod check;
 pub mod compare;
 pub mod methods;
 pub mod warnings;

@@ -1,0 +1,359 @@
+//! Version 1 of the session format: from a JSON tree to a checked session.
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use nalgebra::{Quaternion, UnitQuaternion};
+
+use crate::calibrate::{Mount, Side, SideChoice};
+use crate::geometry::profile::ProfileError;
+use crate::geometry::{Frame, PoseConvention, Profile, Transform};
+use crate::session::check::Finding;
+use crate::session::model::{
+    Capture, Edge, Published, Reading, Robot, Sensor, Session, Station, Target, Truth, UnknownFields,
+};
+
+use super::cursor::{Cursor, Object, Quantity, Refusal, listed};
+use super::limits;
+use super::names;
+
+/// What reading takes along besides the session: what it had to mend.
+#[derive(Debug, Default)]
+pub(super) struct Mended {
+    num_poses: usize,
+    worst: Option<(String, f64)>,
+}
+
+impl Mended {
+    fn note(&mut self, path: &str, norm: f64) {
+        self.num_poses += 1;
+        let worst_off = self.worst.as_ref().map_or(0.0, |(_, worst)| (worst - 1.0).abs());
+        if (norm - 1.0).abs() > worst_off {
+            self.worst = Some((path.to_owned(), norm));
+        }
+    }
+
+    /// As findings, for `handeye check`.
+    pub fn into_findings(self) -> Vec<Finding> {
+        let num_poses = self.num_poses;
+        self.worst
+            .map(|(worst_path, worst_norm)| Finding::QuaternionsNormalised {
+                num_poses,
+                worst_path,
+                worst_norm,
+            })
+            .into_iter()
+            .collect()
+    }
+}
+
+const KINDS: &[(&str, Kind)] = &[
+    (names::BALL, Kind::Ball),
+    (names::RIGHT_ANGLE_PLATE, Kind::RightAnglePlate),
+    (names::POINT, Kind::Point),
+    (names::RGBD, Kind::Rgbd),
+];
+
+#[derive(Clone, Copy)]
+enum Kind {
+    Ball,
+    RightAnglePlate,
+    Point,
+    Rgbd,
+}
+
+/// The session that the tree's top level describes.
+pub(super) fn session(root: &Object<'_>, mended: &mut Mended) -> Result<Session, Refusal> {
+    let (target, unknown) = target(root)?;
+    let stations = stations(root, &target, mended)?;
+    // The truth of other targets is not ours to read: it is among the unknown fields.
+    let truth = match root.optional("truth") {
+        Some(cursor) if matches!(target, Target::Ball { .. }) => Some(truth(&cursor, mended)?),
+        _ => None,
+    };
+    Ok(Session {
+        name: root.text_or_empty("name")?,
+        notes: root.text_or_empty("notes")?,
+        robot: root.optional("robot").map_or_else(|| Ok(Robot::default()), |cursor| robot(&cursor))?,
+        sensor: root.optional("sensor").map_or_else(|| Ok(Sensor::default()), |cursor| sensor(&cursor))?,
+        mount: root.optional("mount").map_or(Ok(Mount::default()), |cursor| {
+            cursor.one_of(&[(names::ON_FLANGE, Mount::OnFlange), (names::FIXED, Mount::Fixed)])
+        })?,
+        published: root.optional("published").map(|cursor| published(&cursor, stations.len())).transpose()?,
+        target,
+        stations,
+        truth,
+        unknown,
+    })
+}
+
+fn robot(cursor: &Cursor<'_>) -> Result<Robot, Refusal> {
+    let object = cursor.object("an object that describes the robot")?;
+    Ok(Robot {
+        model: object.text_or_empty("model")?,
+        pose_convention: object
+            .optional("pose_convention")
+            .map_or_else(|| Ok(PoseConvention::default_convention()), |cursor| convention(&cursor))?,
+        position_std_mm: object.optional_number("position_std_mm", &limits::LENGTH_STD_MM)?,
+        orientation_std_deg: object.optional_number("orientation_std_deg", &limits::ORIENTATION_STD_DEG)?,
+        unknown: object.unknown(names::ROBOT),
+    })
+}
+
+fn sensor(cursor: &Cursor<'_>) -> Result<Sensor, Refusal> {
+    let object = cursor.object("an object that describes the sensor")?;
+    Ok(Sensor {
+        model: object.text_or_empty("model")?,
+        profile_std_mm: object.optional_number("profile_std_mm", &limits::LENGTH_STD_MM)?,
+        reference_distance_mm: object.optional_number("reference_distance_mm", &limits::REFERENCE_DISTANCE_MM)?,
+        unknown: object.unknown(names::SENSOR),
+    })
+}
+
+fn convention(cursor: &Cursor<'_>) -> Result<&'static PoseConvention, Refusal> {
+    let expected = || listed(PoseConvention::ALL.iter().map(|convention| convention.id));
+    PoseConvention::by_id(cursor.text(&expected())?).ok_or_else(|| cursor.refuse(expected()))
+}
+
+fn target(root: &Object<'_>) -> Result<(Target, UnknownFields), Refusal> {
+    let expected = "an object like {\"kind\": \"ball\", \"radius_mm\": 15}";
+    let cursor = root.required("target", expected)?;
+    let object = cursor.object(expected)?;
+    let kind = object.required("kind", &listed(KINDS.iter().map(|(word, _)| *word)))?.one_of(KINDS)?;
+    let target = match kind {
+        Kind::Ball => {
+            let radius = object.required("radius_mm", &limits::BALL_RADIUS_MM.to_string())?;
+            Target::Ball {
+                radius_mm: radius.number(&limits::BALL_RADIUS_MM)?,
+            }
+        }
+        Kind::RightAnglePlate => Target::RightAnglePlate,
+        Kind::Point => Target::Point,
+        Kind::Rgbd => Target::Rgbd {
+            sequence: sequence(root)?,
+        },
+    };
+    let mut unknown = root.unknown(&names::session(&target));
+    object.keep_unknown_in(&mut unknown, "target", names::target(&target));
+    Ok((target, unknown))
+}
+
+fn sequence(root: &Object<'_>) -> Result<String, Refusal> {
+    let expected = "the sequence's folder, relative to this file";
+    let cursor = root.required("sequence", expected)?;
+    let folder = cursor.text(expected)?;
+    if folder.trim().is_empty() || Path::new(folder).is_absolute() {
+        return Err(cursor.refuse(expected));
+    }
+    Ok(folder.to_owned())
+}
+
+fn stations(root: &Object<'_>, target: &Target, mended: &mut Mended) -> Result<Vec<Station>, Refusal> {
+    let expected = "a list of stations";
+    let has_sequence = matches!(target, Target::Rgbd { .. });
+    let cursor = match root.optional("stations") {
+        Some(cursor) => cursor,
+        None if has_sequence => return Ok(Vec::new()),
+        None => root.required("stations", expected)?,
+    };
+    let elements = cursor.elements(expected)?;
+    if has_sequence && !elements.is_empty() {
+        return Err(cursor.refuse("no stations: an RGB-D session has a sequence in their place"));
+    }
+    let mut station_of_label: HashMap<String, usize> = HashMap::new();
+    let mut stations = Vec::with_capacity(elements.len());
+    for (station_idx, element) in elements.iter().enumerate() {
+        let station = station(element, station_idx, target, mended)?;
+        if let Some(first_idx) = station_of_label.insert(station.label.clone(), station_idx) {
+            return Err(Refusal {
+                path: format!("{}.label", element.path()),
+                found: format!("{}, which stations[{first_idx}] has too", super::tree::quoted(&station.label)),
+                expected: "a label of its own for each station".to_owned(),
+            });
+        }
+        stations.push(station);
+    }
+    Ok(stations)
+}
+
+fn station(
+    cursor: &Cursor<'_>,
+    station_idx: usize,
+    target: &Target,
+    mended: &mut Mended,
+) -> Result<Station, Refusal> {
+    let object = cursor.object("an object with the captures of a station")?;
+    let edges = [("p", Edge::P), ("q", Edge::Q)];
+    let edge = match object.optional("edge") {
+        Some(cursor) => Some(cursor.one_of(&edges)?),
+        None if *target == Target::RightAnglePlate => {
+            Some(object.required("edge", "\"p\" or \"q\": the edge of the plate that this station saw")?.one_of(&edges)?)
+        }
+        None => None,
+    };
+    let captures = object.required("captures", "a list of at least one capture")?;
+    let elements = captures.elements("a list of at least one capture")?;
+    if elements.is_empty() {
+        return Err(captures.refuse("at least one capture"));
+    }
+    Ok(Station {
+        label: label(&object, station_idx)?,
+        enabled: object.optional("enabled").map_or(Ok(true), |cursor| cursor.boolean())?,
+        side: object.optional("side").map_or(Ok(SideChoice::Auto), |cursor| {
+            cursor.one_of(&[
+                (names::AUTO, SideChoice::Auto),
+                (Side::Plus.symbol(), SideChoice::Given(Side::Plus)),
+                (Side::Minus.symbol(), SideChoice::Given(Side::Minus)),
+            ])
+        })?,
+        edge,
+        captures: elements.iter().map(|element| capture(element, mended)).collect::<Result<_, _>>()?,
+        unknown: object.unknown(names::STATION),
+    })
+}
+
+fn label(station: &Object<'_>, station_idx: usize) -> Result<String, Refusal> {
+    let expected = "text on one line that is not empty";
+    let Some(cursor) = station.optional("label") else {
+        return Ok((station_idx + 1).to_string());
+    };
+    let label = cursor.text(expected)?;
+    if label.trim().is_empty() || label.chars().any(char::is_control) {
+        return Err(cursor.refuse(expected));
+    }
+    Ok(label.to_owned())
+}
+
+fn capture(cursor: &Cursor<'_>, mended: &mut Mended) -> Result<Capture, Refusal> {
+    let object = cursor.object("an object with base_from_flange, and profile or point_mm")?;
+    let mut unknown = object.unknown(names::CAPTURE);
+    let base_from_flange = pose(&object, "base_from_flange", &mut unknown, mended)?;
+    let either = "either profile or point_mm";
+    let reading = match (object.optional("profile"), object.optional("point_mm")) {
+        (Some(cursor), None) => Reading::Profile(Arc::new(profile(&cursor, &mut unknown)?)),
+        (None, Some(cursor)) => Reading::Point(cursor.vec3(&limits::POINT_MM)?),
+        (Some(_), Some(_)) => return Err(cursor.refuse_as("both profile and point_mm", either)),
+        (None, None) => return Err(cursor.refuse_as("neither profile nor point_mm", either)),
+    };
+    Ok(Capture {
+        base_from_flange,
+        reading,
+        step_mm: object.optional_number("step", &limits::STEP_MM)?,
+        unknown,
+    })
+}
+
+fn profile(cursor: &Cursor<'_>, unknown: &mut UnknownFields) -> Result<Profile, Refusal> {
+    let object = cursor.object("an object with x_mm and z_mm")?;
+    object.keep_unknown_in(unknown, "profile", names::PROFILE);
+    let (x_expected, z_expected) = ("a list of numbers in mm", "a list of numbers in mm, null for a missing point");
+    let (x_cursor, z_cursor) = (object.required("x_mm", x_expected)?, object.required("z_mm", z_expected)?);
+    let x_mm = x_cursor.numbers_or_null(x_expected)?;
+    if let Some(index) = x_mm.iter().position(|x| x.is_nan()) {
+        return Err(x_cursor.refuse_element(index, "null", "a number in mm: only z may be missing"));
+    }
+    let z_mm: Vec<Option<f64>> =
+        z_cursor.numbers_or_null(z_expected)?.iter().map(|z| (!z.is_nan()).then_some(*z)).collect();
+    Profile::new(x_mm.to_vec(), &z_mm).map_err(|error| match error {
+        ProfileError::LengthMismatch { num_x, num_z } => {
+            z_cursor.refuse_as(format!("{num_z} values"), format!("{num_x}, as many as x_mm has"))
+        }
+        ProfileError::OutOfRange { axis, index, value, .. } => {
+            let list = if axis == 'x' { &x_cursor } else { &z_cursor };
+            list.refuse_element(index, value.to_string(), limits::POINT_MM.to_string())
+        }
+    })
+}
+
+/// A pose, as a quaternion or as a maker's three angles.
+fn pose<Dst: Frame, Src: Frame>(
+    parent: &Object<'_>,
+    name: &str,
+    unknown: &mut UnknownFields,
+    mended: &mut Mended,
+) -> Result<Transform<Dst, Src>, Refusal> {
+    let expected = "an object with translation_mm and quaternion_wxyz, or with euler_deg and convention";
+    let cursor = parent.required(name, expected)?;
+    let object = cursor.object(expected)?;
+    object.keep_unknown_in(unknown, name, names::POSE);
+    let translation_mm =
+        object.required("translation_mm", "a list of 3 numbers in mm")?.vec3(&limits::POSITION_MM)?;
+    let rotation = match (object.optional("quaternion_wxyz"), object.optional("euler_deg")) {
+        (Some(cursor), None) => quaternion(&cursor, mended)?,
+        (None, Some(cursor)) => {
+            let angles_deg = cursor.array::<3>(&limits::ANGLE_DEG)?;
+            let known = listed(PoseConvention::ALL.iter().map(|convention| convention.id));
+            let convention = convention(&object.required("convention", &known)?)?;
+            upper_half(convention.rotation_from_angles_deg(angles_deg))
+        }
+        (Some(_), Some(_)) => return Err(cursor.refuse_as("both quaternion_wxyz and euler_deg", "one of them")),
+        (None, None) => {
+            return Err(cursor.refuse_as("no orientation", "quaternion_wxyz, or euler_deg and convention"));
+        }
+    };
+    Ok(Transform::from_parts(translation_mm, rotation))
+}
+
+fn quaternion(cursor: &Cursor<'_>, mended: &mut Mended) -> Result<UnitQuaternion<f64>, Refusal> {
+    let [w, x, y, z] = cursor.array::<4>(&limits::QUATERNION)?;
+    let quaternion = Quaternion::new(w, x, y, z);
+    let norm = quaternion.norm();
+    let off = (norm - 1.0).abs();
+    if off > limits::QUATERNION_NORM_TOLERANCE {
+        return Err(cursor.refuse_as(
+            format!("a quaternion of norm {norm:.6}"),
+            format!("norm 1 within {}", limits::QUATERNION_NORM_TOLERANCE),
+        ));
+    }
+    if off > limits::QUATERNION_NORM_NOTED {
+        mended.note(cursor.path(), norm);
+    }
+    Ok(upper_half(if off > limits::QUATERNION_NORM_EXACT {
+        UnitQuaternion::new_normalize(quaternion)
+    } else {
+        UnitQuaternion::new_unchecked(quaternion)
+    }))
+}
+
+/// Of the two quaternions of a rotation the one with `w ≥ 0`, as it will be saved.
+fn upper_half(rotation: UnitQuaternion<f64>) -> UnitQuaternion<f64> {
+    if rotation.w < 0.0 { UnitQuaternion::new_unchecked(-rotation.into_inner()) } else { rotation }
+}
+
+fn published(cursor: &Cursor<'_>, num_stations: usize) -> Result<Published, Refusal> {
+    let object = cursor.object("an object with what a paper printed")?;
+    let rows = |name: &str, quantity: &Quantity| {
+        let Some(cursor) = object.optional(name) else { return Ok(Vec::new()) };
+        let elements = cursor.elements("a list of points, one a station")?;
+        if elements.len() != num_stations && !elements.is_empty() {
+            return Err(cursor.refuse_as(
+                format!("{} rows", elements.len()),
+                format!("{num_stations}, one a station"),
+            ));
+        }
+        elements.iter().map(|element| element.vec3(quantity)).collect()
+    };
+    Ok(Published {
+        ball_in_base_mm: rows("ball_in_base_mm", &limits::POSITION_MM)?,
+        error_from_first_mm: rows("error_from_first_mm", &limits::POSITION_MM)?,
+        caption: object.text_or_empty("caption")?,
+        unknown: object.unknown(names::PUBLISHED),
+    })
+}
+
+/// The truth; with a fixed sensor its fields are named after the frames that they are in, and either name is read.
+fn truth(cursor: &Cursor<'_>, mended: &mut Mended) -> Result<Truth, Refusal> {
+    let object = cursor.object("an object with the true calibration")?;
+    let present = |fixed, on_flange| if object.optional(fixed).is_some() { fixed } else { on_flange };
+    let pose_name = present("base_from_sensor", "flange_from_sensor");
+    let ball_name = present("ball_in_flange_mm", "ball_in_base_mm");
+    let mut unknown = object.unknown(names::TRUTH);
+    let flange_from_sensor = pose(&object, pose_name, &mut unknown, mended)?;
+    let ball = object.required(ball_name, "the ball's true centre, a list of 3 numbers in mm")?;
+    Ok(Truth {
+        flange_from_sensor,
+        ball_in_base_mm: ball.vec3(&limits::POSITION_MM)?,
+        unknown,
+    })
+}

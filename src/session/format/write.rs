@@ -1,0 +1,332 @@
+//! Writing sessions: stable order, one line a list of numbers, and every number in its shortest exact form.
+
+use std::fmt::Write;
+
+use serde_json::Value;
+
+use crate::calibrate::{Mount, SideChoice};
+use crate::geometry::{Frame, Profile, Transform, Vec3};
+use crate::session::model::{
+    Capture, Edge, Published, Reading, Robot, Sensor, Session, Station, Target, Truth, UnknownFields,
+};
+
+use super::{VERSION, names};
+
+/// The session as the text of its file. Equal sessions give equal text.
+#[must_use]
+pub fn to_json(session: &Session) -> String {
+    let mut out = Writer::default();
+    out.open(Layout::Lines);
+    out.field("format").text(names::FORMAT);
+    out.field("version").raw(&VERSION.to_string());
+    out.field("name").text(&session.name);
+    out.field("notes").text(&session.notes);
+    if session.robot != Robot::default() {
+        out.field("robot");
+        robot(&mut out, &session.robot);
+    }
+    if session.sensor != Sensor::default() {
+        out.field("sensor");
+        sensor(&mut out, &session.sensor);
+    }
+    out.field("target");
+    target(&mut out, &session.target, nested(&session.unknown, "target"));
+    if session.mount == Mount::Fixed {
+        out.field("mount").text(names::FIXED);
+    }
+    if let Target::Rgbd { sequence } = &session.target {
+        out.field("sequence").text(sequence);
+    } else {
+        out.field("stations");
+        out.list(Layout::Lines, &session.stations, station);
+    }
+    if let Some(printed) = &session.published {
+        out.field("published");
+        published(&mut out, printed);
+    }
+    if let Some(true_values) = &session.truth {
+        out.field("truth");
+        truth(&mut out, true_values, session.mount);
+    }
+    out.unknown(&session.unknown, &names::session(&session.target));
+    out.close();
+    out.text.push('\n');
+    out.text
+}
+
+fn robot(out: &mut Writer, robot: &Robot) {
+    out.open(Layout::Line);
+    out.field("model").text(&robot.model);
+    out.field("pose_convention").text(robot.pose_convention.id);
+    out.optional_number("position_std_mm", robot.position_std_mm);
+    out.optional_number("orientation_std_deg", robot.orientation_std_deg);
+    out.unknown(&robot.unknown, names::ROBOT);
+    out.close();
+}
+
+fn sensor(out: &mut Writer, sensor: &Sensor) {
+    out.open(Layout::Line);
+    out.field("model").text(&sensor.model);
+    out.optional_number("profile_std_mm", sensor.profile_std_mm);
+    out.optional_number("reference_distance_mm", sensor.reference_distance_mm);
+    out.unknown(&sensor.unknown, names::SENSOR);
+    out.close();
+}
+
+fn target(out: &mut Writer, target: &Target, unknown: Option<&UnknownFields>) {
+    out.open(Layout::Line);
+    out.field("kind").text(match target {
+        Target::Ball { .. } => names::BALL,
+        Target::RightAnglePlate => names::RIGHT_ANGLE_PLATE,
+        Target::Point => names::POINT,
+        Target::Rgbd { .. } => names::RGBD,
+    });
+    if let Target::Ball { radius_mm } = target {
+        out.optional_number("radius_mm", Some(*radius_mm));
+    }
+    out.nested_unknown(unknown, names::target(target));
+    out.close();
+}
+
+fn station(out: &mut Writer, station: &Station) {
+    out.open(Layout::Line);
+    out.field("label").text(&station.label);
+    out.field("enabled").raw(if station.enabled { "true" } else { "false" });
+    out.field("side").text(match station.side {
+        SideChoice::Auto => names::AUTO,
+        SideChoice::Given(side) => side.symbol(),
+    });
+    if let Some(edge) = station.edge {
+        out.field("edge").text(match edge {
+            Edge::P => "p",
+            Edge::Q => "q",
+        });
+    }
+    out.unknown(&station.unknown, names::STATION);
+    out.field_on_new_line("captures");
+    out.list(Layout::Lines, &station.captures, capture);
+    out.close();
+}
+
+fn capture(out: &mut Writer, capture: &Capture) {
+    out.open(Layout::Line);
+    out.field("base_from_flange");
+    pose(out, &capture.base_from_flange, nested(&capture.unknown, "base_from_flange"));
+    out.optional_number("step", capture.step_mm);
+    out.unknown(&capture.unknown, names::CAPTURE);
+    match &capture.reading {
+        Reading::Point(point_in_sensor) => {
+            out.field("point_mm").vec3(point_in_sensor);
+        }
+        Reading::Profile(points) => {
+            out.field_on_new_line("profile");
+            profile(out, points, nested(&capture.unknown, "profile"));
+        }
+    }
+    out.close();
+}
+
+fn profile(out: &mut Writer, profile: &Profile, unknown: Option<&UnknownFields>) {
+    out.open(Layout::Lines);
+    out.field("x_mm").numbers(profile.x_mm());
+    out.field("z_mm").numbers(profile.z_mm());
+    out.nested_unknown(unknown, names::PROFILE);
+    out.close();
+}
+
+fn pose<Dst: Frame, Src: Frame>(out: &mut Writer, pose: &Transform<Dst, Src>, unknown: Option<&UnknownFields>) {
+    out.open(Layout::Line);
+    out.field("translation_mm").vec3(&pose.translation_mm());
+    out.field("quaternion_wxyz").numbers(&pose.quaternion_wxyz());
+    out.nested_unknown(unknown, names::POSE);
+    out.close();
+}
+
+fn published(out: &mut Writer, published: &Published) {
+    out.open(Layout::Lines);
+    if !published.caption.is_empty() {
+        out.field("caption").text(&published.caption);
+    }
+    for (name, rows) in
+        [("ball_in_base_mm", &published.ball_in_base_mm), ("error_from_first_mm", &published.error_from_first_mm)]
+    {
+        if !rows.is_empty() {
+            out.field(name);
+            out.list(Layout::Line, rows, |out, row| {
+                out.vec3(row);
+            });
+        }
+    }
+    out.unknown(&published.unknown, names::PUBLISHED);
+    out.close();
+}
+
+fn truth(out: &mut Writer, truth: &Truth, mount: Mount) {
+    let (pose_name, ball_name) = match mount {
+        Mount::OnFlange => ("flange_from_sensor", "ball_in_base_mm"),
+        Mount::Fixed => ("base_from_sensor", "ball_in_flange_mm"),
+    };
+    out.open(Layout::Lines);
+    out.field(pose_name);
+    pose(out, &truth.flange_from_sensor, nested(&truth.unknown, pose_name));
+    out.field(ball_name).vec3(&truth.ball_in_base_mm);
+    out.unknown(&truth.unknown, names::TRUTH);
+    out.close();
+}
+
+/// The unknown fields of the object `name`, which its parent keeps.
+fn nested<'u>(unknown: &'u UnknownFields, name: &str) -> Option<&'u UnknownFields> {
+    unknown.get(name).and_then(Value::as_object)
+}
+
+/// Whether the members of an object or list stand on a line each.
+#[derive(Clone, Copy, PartialEq)]
+enum Layout {
+    Line,
+    Lines,
+}
+
+struct Level {
+    layout: Layout,
+    is_empty: bool,
+    closing: char,
+    /// Whether any member stands on a line of its own.
+    is_broken: bool,
+}
+
+/// JSON text under construction.
+#[derive(Default)]
+struct Writer {
+    text: String,
+    levels: Vec<Level>,
+}
+
+impl Writer {
+    fn begin(&mut self, layout: Layout, opening: char, closing: char) {
+        self.text.push(opening);
+        self.levels.push(Level {
+            layout,
+            is_empty: true,
+            closing,
+            is_broken: false,
+        });
+    }
+
+    fn open(&mut self, layout: Layout) {
+        self.begin(layout, '{', '}');
+    }
+
+    fn close(&mut self) {
+        let Some(level) = self.levels.pop() else { return };
+        if level.is_broken && level.layout == Layout::Lines {
+            self.new_line();
+        } else if !level.is_empty && level.closing == '}' {
+            self.text.push(' ');
+        }
+        self.text.push(level.closing);
+    }
+
+    fn new_line(&mut self) {
+        self.text.push('\n');
+        self.text.extend(std::iter::repeat_n("  ", self.levels.len()));
+    }
+
+    fn member(&mut self, layout: Layout) {
+        let Some(level) = self.levels.last_mut() else { return };
+        let (is_first, is_object) = (level.is_empty, level.closing == '}');
+        level.is_empty = false;
+        level.is_broken |= layout == Layout::Lines;
+        if !is_first {
+            self.text.push(',');
+        }
+        if layout == Layout::Lines {
+            self.new_line();
+        } else if !is_first || is_object {
+            self.text.push(' ');
+        }
+    }
+
+    fn field(&mut self, name: &str) -> &mut Self {
+        let layout = self.levels.last().map_or(Layout::Line, |level| level.layout);
+        self.named_member(name, layout)
+    }
+
+    fn field_on_new_line(&mut self, name: &str) -> &mut Self {
+        self.named_member(name, Layout::Lines)
+    }
+
+    fn named_member(&mut self, name: &str, layout: Layout) -> &mut Self {
+        self.member(layout);
+        self.text(name);
+        self.raw(": ")
+    }
+
+    fn list<T>(&mut self, layout: Layout, items: &[T], mut write: impl FnMut(&mut Self, &T)) {
+        self.begin(layout, '[', ']');
+        for item in items {
+            self.member(layout);
+            write(self, item);
+        }
+        self.close();
+    }
+
+    fn raw(&mut self, json: &str) -> &mut Self {
+        self.text.push_str(json);
+        self
+    }
+
+    fn text(&mut self, text: &str) -> &mut Self {
+        let json = Value::from(text).to_string();
+        self.raw(&json)
+    }
+
+    fn number(&mut self, value: f64) {
+        /// Outside of these the plain form would be a row of zeros.
+        const PLAIN: std::ops::Range<f64> = 1e-5..1e16;
+        // Writing to a string cannot fail; the shortest form that reads back as the same number is Rust's own.
+        let _ = if value.is_nan() || value.is_infinite() {
+            write!(self.text, "null")
+        } else if value == 0.0 {
+            write!(self.text, "0")
+        } else if PLAIN.contains(&value.abs()) {
+            write!(self.text, "{value}")
+        } else {
+            write!(self.text, "{value:e}")
+        };
+    }
+
+    fn numbers(&mut self, values: &[f64]) -> &mut Self {
+        self.text.push('[');
+        for (idx, value) in values.iter().enumerate() {
+            if idx > 0 {
+                self.text.push_str(", ");
+            }
+            self.number(*value);
+        }
+        self.raw("]")
+    }
+
+    fn vec3(&mut self, vector: &Vec3) -> &mut Self {
+        self.numbers(vector.as_slice())
+    }
+
+    fn optional_number(&mut self, name: &str, value: Option<f64>) {
+        if let Some(value) = value {
+            self.field(name).number(value);
+        }
+    }
+
+    /// The fields of `unknown` that are not `known` ones: those hold what belongs to the objects below.
+    fn unknown(&mut self, unknown: &UnknownFields, known: &[&str]) {
+        for (name, value) in unknown.iter().filter(|(name, _)| !known.contains(&name.as_str())) {
+            let json = value.to_string();
+            self.field(name).raw(&json);
+        }
+    }
+
+    fn nested_unknown(&mut self, unknown: Option<&UnknownFields>, known: &[&str]) {
+        if let Some(unknown) = unknown {
+            self.unknown(unknown, known);
+        }
+    }
+}
