@@ -3,6 +3,7 @@
 pub mod arcs;
 pub mod check;
 pub mod cli;
+pub mod compare;
 pub mod methods;
 pub mod poses;
 pub mod shell;

@@ -54,15 +54,14 @@ pub fn pose_figures(session: &Session, station_idx: usize, capture_idx: usize) -
 #[must_use]
 pub fn labels_of(warning: &Warning) -> &[String] {
     match warning {
-        Warning::SideAmbiguous { label, .. }
-        | Warning::ArcLargerThanBall { label, .. }
+        Warning::ArcLargerThanBall { label, .. }
         | Warning::CaptureRefused { label, .. }
         | Warning::StationSkipped { label, .. }
         | Warning::TravelOffNormal { label, .. }
         | Warning::PeakNotCovered { label, .. }
         | Warning::StepDiffersFromPose { label, .. }
         | Warning::StationStandsOut { label, .. } => std::slice::from_ref(label),
-        Warning::BlindInY { labels, .. } => labels,
+        Warning::BlindInY { labels, .. } | Warning::SideAmbiguous { labels, .. } => labels,
         Warning::FewStations { .. }
         | Warning::LittleRotation { .. }
         | Warning::NearlyOneAxis { .. }
