@@ -129,6 +129,7 @@ fn show_table(
         .body(|body| {
             body.rows(theme::ROW_HEIGHT, rows.len(), |mut table_row| {
                 let Some(&row) = rows.get(table_row.index()) else { return };
+                table_row.set_overline(true);
                 table_row.set_selected(is_selected(context, row));
                 match row {
                     Row::Station(station_idx) => show_station(&mut table_row, context, document, state, station_idx),
