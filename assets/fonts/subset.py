@@ -32,7 +32,7 @@ def main(source, target):
     tabular = tabular_figures(font)
     for table in font["cmap"].tables:
         for code, name in list(table.cmap.items()):
-            if chr(code) in "0123456789+-\u2212\u00b1" and name in tabular:
+            if chr(code) in "0123456789+\u2212\u00b1" and name in tabular:
                 table.cmap[code] = tabular[name]
     options = subset.Options(layout_features=["kern"], hinting=False, notdef_outline=True, name_IDs=["*"])
     subsetter = subset.Subsetter(options)

@@ -189,9 +189,9 @@ fn matrix(ui: &mut Ui, solution: &Solution) {
 }
 
 /// Width of one of three figures in a row, points: room for seven digits, sign and point.
-const FIGURE_WIDTH: f32 = 66.0;
+const FIGURE_WIDTH: f32 = 64.0;
 /// Width of a row's unit, points.
-const UNIT_WIDTH: f32 = 24.0;
+const UNIT_WIDTH: f32 = 28.0;
 
 /// Three figures with their unit, each right-aligned in a column of its own, the unit in a dimmer tone.
 fn triple_row(ui: &mut Ui, label: &str, values: [String; 3], unit: &str) {

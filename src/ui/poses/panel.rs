@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use egui::{Align, Key, Layout, Modifiers, RichText, Sense, Ui};
+use egui::{Align, Key, Layout, Modifiers, RichText, Sense, Ui, vec2};
 use egui_extras::{Column, TableRow};
 
 use crate::app::{Command, Document, Results};
@@ -40,7 +40,10 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut PosesState)
         height,
         |ui| {
             let label = if is_all_unfolded { words::FOLD_ALL } else { words::UNFOLD_ALL };
-            toggle_all = ui.small_button(label).clicked();
+            let button = egui::Button::new(RichText::new(label).small()).min_size(vec2(0.0, theme::ROW_HEIGHT));
+            ui.spacing_mut().interact_size.y = theme::ROW_HEIGHT;
+            ui.spacing_mut().button_padding = vec2(8.0, 2.0);
+            toggle_all = ui.add(button).clicked();
             ui.label(theme::dim(ui, words::usage(num_enabled, num_stations)));
         },
         |ui| {
@@ -99,15 +102,17 @@ fn show_table(
     moved_to: Option<usize>,
 ) {
     let angle_names = document.session.robot.pose_convention.angle_names;
+    // Cells touch, so that the hairlines between rows run through.
+    ui.spacing_mut().item_spacing.x = 0.0;
     let mut builder = table(ui, "poses")
         .sense(Sense::click())
-        .column(Column::exact(36.0))
-        .column(Column::exact(24.0))
+        .column(Column::exact(44.0))
+        .column(Column::exact(28.0))
         .column(Column::initial(96.0).at_least(56.0).clip(true))
         .column(Column::exact(48.0))
         .columns(number_column(64.0), 6)
-        .column(Column::exact(72.0))
-        .column(Column::exact(64.0));
+        .column(Column::exact(80.0))
+        .column(Column::exact(72.0));
     if let Some(row_idx) = moved_to {
         builder = builder.scroll_to_row(row_idx, None);
     }
