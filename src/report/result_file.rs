@@ -4,6 +4,7 @@ use serde_json::{Map, Value, json};
 
 use crate::calibrate::{MethodResult, Mount, Solution, StationSolution, Uncertainty, Warning};
 use crate::geometry::{Frame, Transform, Vec3};
+use crate::session::Session;
 use crate::text;
 
 /// The format's name.
@@ -11,20 +12,20 @@ pub const FORMAT: &str = "handeye-result";
 /// The format's version.
 pub const VERSION: u32 = 1;
 
-/// The results of a session as a JSON document.
+/// The results of a session as a JSON document. Stations that a method left out are listed as not used.
 #[must_use]
-pub fn result_file(session_name: &str, results: &[MethodResult]) -> Value {
+pub fn result_file(session: &Session, results: &[MethodResult]) -> Value {
     json!({
         "format": FORMAT,
         "version": VERSION,
-        "session": session_name,
-        "methods": results.iter().map(method_entry).collect::<Vec<_>>(),
+        "session": session.name,
+        "methods": results.iter().map(|result| method_entry(session, result)).collect::<Vec<_>>(),
     })
 }
 
-fn method_entry(result: &MethodResult) -> Value {
+fn method_entry(session: &Session, result: &MethodResult) -> Value {
     match &result.outcome {
-        Ok(solution) => solution_entry(solution),
+        Ok(solution) => solution_entry(session, solution),
         Err(error) => json!({
             "method": result.method.id(),
             "status": "failed",
@@ -33,7 +34,7 @@ fn method_entry(result: &MethodResult) -> Value {
     }
 }
 
-fn solution_entry(solution: &Solution) -> Value {
+fn solution_entry(session: &Session, solution: &Solution) -> Value {
     let names = Names::of(solution.mount);
     let mut entry = Map::new();
     entry.insert("method".to_owned(), json!(solution.method.id()));
@@ -57,7 +58,18 @@ fn solution_entry(solution: &Solution) -> Value {
     entry.insert("rotation_span_deg".to_owned(), json!(solution.rotation_span_rad.to_degrees()));
     entry.insert(
         "stations".to_owned(),
-        solution.stations.iter().map(|station| station_entry(station, &names)).collect(),
+        session
+            .stations
+            .iter()
+            .enumerate()
+            .map(|(idx, station)| {
+                solution
+                    .stations
+                    .iter()
+                    .find(|used| used.station_idx == idx)
+                    .map_or_else(|| json!({ "label": station.label, "used": false }), |used| station_entry(used, &names))
+            })
+            .collect(),
     );
     entry.insert("warnings".to_owned(), solution.warnings.iter().map(warning).collect());
     Value::Object(entry)

@@ -1,0 +1,121 @@
+//! Tables in the layout of Lin & Mu 2019, Tables 1 and 2, and the printed ones checked against themselves.
+
+use std::fmt::Write as _;
+
+use crate::app::compare::published_rows;
+use crate::calibrate::{MethodResult, Solution};
+use crate::geometry::Vec3;
+use crate::report::digits::fixed;
+use crate::session::Session;
+use crate::text;
+
+const HEAD: &str = "No.       q0        q1        q2        q3 |       t1        t2        t3 |       xs        ys        zs | \
+                          xb        yb        zb |   x err    y err    z err";
+
+/// One table a method, then the published one, if the session holds it.
+pub fn paper_tables(session: &Session, results: &[MethodResult]) -> String {
+    let mut out = String::new();
+    for result in results {
+        match &result.outcome {
+            Ok(solution) => method_table(&mut out, session, solution),
+            Err(error) => {
+                writeln!(out, "{}: not computed: {error}\n", text::method_name(result.method)).ok();
+            }
+        }
+    }
+    published_table(&mut out, session);
+    out
+}
+
+fn method_table(out: &mut String, session: &Session, solution: &Solution) {
+    writeln!(
+        out,
+        "{} · flange in base (quaternion, translation/mm) · ball in sensor/mm · ball in base/mm · error/mm",
+        text::method_name(solution.method)
+    )
+    .ok();
+    writeln!(out, "{HEAD}").ok();
+    for station in &solution.stations {
+        let Some(capture) =
+            session.stations.get(station.station_idx).and_then(|recorded| recorded.captures.first())
+        else {
+            continue;
+        };
+        let pose = capture.base_from_flange;
+        let [q0, q1, q2, q3] = pose.quaternion_wxyz();
+        write!(out, "{:<4} {q0:>8.5}  {q1:>8.5}  {q2:>8.5}  {q3:>8.5} |", station.label).ok();
+        triple(out, pose.translation_mm(), 9);
+        triple(out, station.ball_in_sensor_mm, 9);
+        triple(out, station.ball_in_base_mm, 9);
+        let error = station.error_from_first_mm;
+        writeln!(out, " {:>8} {:>8} {:>8}", fixed(error.x, 3), fixed(error.y, 3), fixed(error.z, 3)).ok();
+    }
+    writeln!(
+        out,
+        "scatter of the ball in base: RMS {} mm, maximum {} mm (3D) about ({:.1}, {:.1}, {:.1})\n",
+        fixed(solution.scatter.rms_mm, 3),
+        fixed(solution.scatter.max_mm, 3),
+        solution.ball_in_base_mm.x,
+        solution.ball_in_base_mm.y,
+        solution.ball_in_base_mm.z
+    )
+    .ok();
+}
+
+fn triple(out: &mut String, vector: Vec3, width: usize) {
+    for value in vector.iter() {
+        write!(out, "{:>width$} ", fixed(*value, 3)).ok();
+    }
+    out.push('|');
+}
+
+fn published_table(out: &mut String, session: &Session) {
+    let Some(published) = &session.published else { return };
+    let rows = published_rows(published);
+    if rows.is_empty() {
+        return;
+    }
+    let caption = if published.caption.is_empty() { "As published" } else { &published.caption };
+    writeln!(out, "{caption} · printed ball in base/mm · printed error/mm · error recomputed from the printed centres/mm")
+        .ok();
+    writeln!(
+        out,
+        "No.         xb        yb        zb | printed x        y        z | recomp. x        y        z"
+    )
+    .ok();
+    let mut misprints = Vec::new();
+    for (idx, row) in rows.iter().enumerate() {
+        let label = session.stations.get(idx).map_or("", |station| station.label.as_str());
+        write!(out, "{label:<4} ").ok();
+        for value in row.ball_in_base_mm.iter() {
+            write!(out, "{value:>9.3} ").ok();
+        }
+        out.push('|');
+        for axis in 0..3 {
+            let printed = row.printed_error_mm.map_or_else(|| "–".to_owned(), |error| fixed(error[axis], 4));
+            let mark = if row.is_misprint[axis] { "*" } else { " " };
+            write!(out, " {printed:>7}{mark}").ok();
+            if let (true, Some(error)) = (row.is_misprint[axis], row.printed_error_mm) {
+                misprints.push(format!(
+                    "row {label}, {}: printed {}, but the printed centres give {}",
+                    ["x", "y", "z"][axis],
+                    fixed(error[axis], 3),
+                    fixed(row.recomputed_error_mm[axis], 3)
+                ));
+            }
+        }
+        out.push('|');
+        for axis in 0..3 {
+            write!(out, " {:>8}", fixed(row.recomputed_error_mm[axis], 4)).ok();
+        }
+        out.push('\n');
+    }
+    let largest = rows.iter().map(|row| row.recomputed_error_mm.amax()).fold(0.0, f64::max);
+    writeln!(out, "largest coordinate of the recomputed error: {} mm", fixed(largest, 4)).ok();
+    if !misprints.is_empty() {
+        writeln!(out, "* misprint{}:", if misprints.len() == 1 { "" } else { "s" }).ok();
+        for misprint in misprints {
+            writeln!(out, "  {misprint}").ok();
+        }
+    }
+}

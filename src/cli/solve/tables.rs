@@ -1,0 +1,175 @@
+//! The tables that `solve` prints for people.
+
+use std::fmt::Write as _;
+
+use crate::app::compare::{distance_from_truth, improvement, maximum_error_mm};
+use crate::calibrate::verdict::judge;
+use crate::calibrate::{BallProblem, Method, MethodResult, Mount, Solution};
+use crate::report::digits::{decimals_for, fixed, signed};
+use crate::session::Session;
+use crate::text;
+
+/// Everything about the results, for a terminal 100 columns wide.
+///
+/// Writing to a string does not fail, hence the `ok()`s.
+pub fn tables(session: &Session, problem: &BallProblem, results: &[MethodResult]) -> String {
+    let mut out = String::new();
+    let num_profiles: usize = problem.stations.iter().map(|station| station.captures.len()).sum();
+    writeln!(
+        out,
+        "{} · ball R = {} mm · {} of {} stations, {} captures\n",
+        session.name,
+        problem.radius_mm,
+        problem.stations.len(),
+        session.stations.len(),
+        num_profiles
+    )
+    .ok();
+    overview(&mut out, session, results);
+    for result in results {
+        match &result.outcome {
+            Ok(solution) => method_section(&mut out, session, solution),
+            Err(error) => {
+                writeln!(out, "\n{} ({})\n  not computed: {error}", text::method_name(result.method), result.method.id())
+                    .ok();
+            }
+        }
+    }
+    out
+}
+
+fn overview(out: &mut String, session: &Session, results: &[MethodResult]) {
+    let has_truth = session.truth.is_some();
+    writeln!(
+        out,
+        "{:<28} {:>9} {:>9} {:>9} {:>9}{}",
+        "errors in mm", "max", "RMS", "left out", "σ point",
+        if has_truth { "   from truth" } else { "" }
+    )
+    .ok();
+    for result in results {
+        let name = text::method_name(result.method);
+        let Ok(solution) = &result.outcome else {
+            writeln!(out, "{name:<28} {:>9}", "–").ok();
+            continue;
+        };
+        let figure = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| fixed(value, 3));
+        let truth = session.truth.as_ref().map_or_else(String::new, |truth| {
+            let distance = distance_from_truth(solution, truth);
+            format!(
+                "   {} mm, {}°",
+                fixed(distance.workspace_point_mm, 3),
+                fixed(distance.rotation_rad.to_degrees(), 4)
+            )
+        });
+        writeln!(
+            out,
+            "{name:<28} {:>9} {:>9} {:>9} {:>9}{truth}",
+            figure(Some(maximum_error_mm(solution))),
+            figure(Some(solution.scatter.rms_mm)),
+            figure(solution.leave_one_out.map(|left_out| left_out.rms_mm)),
+            figure(solution.uncertainty.as_ref().map(|uncertainty| uncertainty.workspace_point_std_mm)),
+        )
+        .ok();
+    }
+    out.push_str(
+        "max: largest coordinate relative to the first station · RMS: scatter of the ball about its place, 3D\n\
+         left out: each station predicted by the others, RMS · σ point: 1 σ of a point in the workspace, 3D\n",
+    );
+    if let Some(improvement) = improvement(results)
+        && let Some(percent) = improvement.percent()
+    {
+        writeln!(
+            out,
+            "{}: maximum error {} mm, {} % against {} ({} mm)",
+            text::method_name(improvement.method),
+            fixed(improvement.error_mm, 3),
+            signed(percent, 0),
+            text::method_short_name(improvement.baseline),
+            fixed(improvement.baseline_error_mm, 3)
+        )
+        .ok();
+    }
+}
+
+fn method_section(out: &mut String, session: &Session, solution: &Solution) {
+    let method: Method = solution.method;
+    writeln!(out, "\n{} ({})", text::method_name(method), method.id()).ok();
+    let (verdict, reason) = judge(solution);
+    writeln!(out, "  {}", text::verdict_line(verdict, reason, &solution.warnings)).ok();
+    calibration(out, session, solution);
+    out.push_str(
+        "  station  side      ball in sensor / mm            ball in base / mm          error from first / mm    left out\n",
+    );
+    for station in &solution.stations {
+        let (in_sensor, in_base, error) =
+            (station.ball_in_sensor_mm, station.ball_in_base_mm, station.error_from_first_mm);
+        let f = |value: f64| fixed(value, 3);
+        writeln!(
+            out,
+            "  {:<8} {:>3} {:>9} {:>9} {:>9}  {:>9} {:>9} {:>9}  {:>7} {:>7} {:>7}  {:>8}",
+            station.label,
+            station.side.symbol(),
+            f(in_sensor.x),
+            f(in_sensor.y),
+            f(in_sensor.z),
+            f(in_base.x),
+            f(in_base.y),
+            f(in_base.z),
+            signed(error.x, 3),
+            signed(error.y, 3),
+            signed(error.z, 3),
+            station.leave_one_out_mm.map_or_else(|| "–".to_owned(), f),
+        )
+        .ok();
+    }
+    for warning in &solution.warnings {
+        writeln!(
+            out,
+            "  ! [{}] {} {}",
+            warning.code(),
+            text::warning_message(warning),
+            text::warning_remedy(warning)
+        )
+        .ok();
+    }
+}
+
+fn calibration(out: &mut String, session: &Session, solution: &Solution) {
+    let name = match solution.mount {
+        Mount::OnFlange => "flange_from_sensor",
+        Mount::Fixed => "base_from_sensor",
+    };
+    let convention = session.robot.pose_convention;
+    let translation = solution.flange_from_sensor.translation_mm();
+    let angles = convention.angles_deg_from_rotation(&solution.flange_from_sensor.rotation());
+    let uncertainty = solution.uncertainty.as_ref();
+    let translation_std = uncertainty.map(|uncertainty| uncertainty.translation_std_mm);
+    let rotation_std = uncertainty.map(|uncertainty| uncertainty.rotation_std_rad.map(f64::to_degrees));
+    write!(out, "  {name}: ").ok();
+    for axis in 0..3 {
+        let std = translation_std.map(|std| std[axis]);
+        write!(out, "{} {}", ["x", "y", "z"][axis], fixed(translation[axis], decimals_for(std))).ok();
+        if let Some(std) = std {
+            write!(out, " ± {}", fixed(std, decimals_for(Some(std)))).ok();
+        }
+        out.push_str(if axis < 2 { ", " } else { " mm\n" });
+    }
+    let worst_rotation_std = rotation_std.map(|std| std.max());
+    let decimals = decimals_for(worst_rotation_std);
+    writeln!(
+        out,
+        "  {:>width$}  {} {}, {} {}, {} {} °{} ({})",
+        "",
+        convention.angle_names[0],
+        fixed(angles[0], decimals),
+        convention.angle_names[1],
+        fixed(angles[1], decimals),
+        convention.angle_names[2],
+        fixed(angles[2], decimals),
+        worst_rotation_std.map_or_else(String::new, |std| format!(" ± {}", fixed(std, decimals))),
+        convention.label,
+        width = name.len()
+    )
+    .ok();
+}
