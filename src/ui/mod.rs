@@ -3,11 +3,31 @@
 //! Every panel is a function of the shared [`PanelContext`] and a state of its own; it queues commands and changes
 //! nothing itself. A step of the rail is a folder with its panel, the model it draws, and the painting.
 
+pub mod actions;
 pub mod arcs;
 pub mod charts;
+pub mod compare;
+pub mod dialogs;
+pub mod file_dialog;
 pub mod figures;
+pub mod inspector;
+pub mod persisted;
+pub mod poses;
+pub mod rail;
+pub mod screenshot;
+pub mod shell;
+pub mod software_renderer;
+pub mod start;
+pub mod status;
 pub mod theme;
+pub mod top_bar;
 pub mod widgets;
+pub mod window;
+
+pub use rail::Step;
+pub use screenshot::{ScreenshotError, screenshot};
+pub use shell::Shell;
+pub use window::{Start, Window, WindowError, run};
 
 use crate::app::{Command, Workbench};
 use crate::calibrate::Method;

@@ -130,6 +130,17 @@ pub const fn method_color(method: Method) -> Color32 {
     }
 }
 
+/// A darker shade of the method's colour, with enough contrast for text on a light ground.
+#[must_use]
+pub const fn method_text_color(method: Method) -> Color32 {
+    match method {
+        Method::BallFixedPoint => method_color(method),
+        Method::BallMaxArcStep => Color32::from_rgb(0x66, 0x66, 0x66),
+        Method::BallMaxArc => Color32::from_rgb(0xb3, 0x62, 0x00),
+        Method::BallBundle => Color32::from_rgb(0x00, 0x7a, 0x59),
+    }
+}
+
 /// The marker that a method has in every plot.
 #[must_use]
 pub const fn method_marker(method: Method) -> MarkerShape {
@@ -179,6 +190,12 @@ fn number_family() -> FontFamily {
 /// Text in the second weight, for titles of cards and the figures that matter.
 pub fn strong(text: impl Into<String>) -> RichText {
     RichText::new(text).family(strong_family()).strong()
+}
+
+/// The font of [`strong`], for painters.
+#[must_use]
+pub fn strong_font() -> FontId {
+    FontId::new(BODY_SIZE, strong_family())
 }
 
 /// Text in the third size and second weight, for the title of a page or a verdict.

@@ -1,8 +1,10 @@
 //! Small building blocks that every panel shares.
 
 mod card;
+mod controls;
 mod number;
 pub mod tables;
 
 pub use card::{card, card_with_height, chip, heading_row};
+pub use controls::{named_checkbox, primary_button, symbol_button};
 pub use number::{fixed, number, number_text, signed, value_row};

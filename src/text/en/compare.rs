@@ -1,0 +1,261 @@
+//! The comparison panel.
+
+use crate::calibrate::{Method, Solution, VerdictReason};
+
+use super::{methods, warnings};
+
+/// In place of the panel without a session.
+pub const NO_SESSION: &str = "Open a session, or one of the samples, to compare the methods on it.";
+/// In place of the panel before the first results.
+pub const SOLVING: &str = "Solving: the methods appear here as soon as the first result is there.";
+/// Shown on results of an earlier revision.
+pub const OUT_OF_DATE: &str = "out of date";
+/// Toggles the reasons of the verdict.
+pub const WHY: &str = "Why?";
+/// No method gave a result.
+pub const NO_METHOD: &str = "No method could compute a calibration; each card says what it needs.";
+/// Before the toggles of the methods.
+pub const SHOW: &str = "Show";
+/// Errors relative to the first station, as in the paper.
+pub const FROM_FIRST: &str = "from first";
+/// The same, on hover.
+pub const FROM_FIRST_HINT: &str = "Errors relative to the first station, as in the paper";
+/// Errors about the mean.
+pub const ABOUT_MEAN: &str = "about mean";
+/// The same, on hover.
+pub const ABOUT_MEAN_HINT: &str = "Errors about the mean of the stations used: no station is singled out";
+/// Toggles the layout of the paper's tables.
+pub const PAPER_LAYOUT: &str = "paper layout";
+/// Toggles the matrices.
+pub const MATRICES: &str = "matrices";
+/// Head of the first column.
+pub const STATION: &str = "station";
+/// Head over the ball's coordinates.
+pub const BALL_IN_BASE: &str = "ball in base / mm";
+/// Head over the errors from the first station.
+pub const ERROR_FROM_FIRST: &str = "error from station 1 / mm";
+/// Head over the errors about the mean.
+pub const ERROR_FROM_MEAN: &str = "error about the mean / mm";
+/// Head of the error's size.
+pub const ERROR_SIZE: &str = "|e|";
+/// Paper layout: number.
+pub const NUMBER: &str = "no.";
+/// Paper layout: translation.
+pub const TRANSLATION: &str = "translation / mm";
+/// Paper layout: rotation.
+pub const QUATERNION: &str = "quaternion";
+/// Paper layout: ball in the sensor frame.
+pub const BALL_IN_SENSOR: &str = "ball in sensor / mm";
+/// Paper layout: error.
+pub const ERROR: &str = "error / mm";
+/// Legend of the tints.
+pub const TINT_LEGEND: &str = "error ≥";
+/// Unit of the tints' legend.
+pub const TINT_UNIT: &str = "mm";
+/// A station that takes no part.
+pub const LEFT_OUT: &str = "left out";
+/// A station that takes part, but which this method could not use.
+pub const NOT_USED: &str = "not used by this method";
+/// Title of the bars.
+pub const ERROR_PER_STATION: &str = "Error per station";
+/// Bars show left-out errors.
+pub const BARS_LEFT_OUT: &str = "left out";
+/// What left-out errors are.
+pub const BARS_LEFT_OUT_HINT: &str = "Each station's ball against the calibration made without that station: what a new station would see";
+/// Bars show in-sample errors.
+pub const BARS_IN_SAMPLE: &str = "in sample";
+/// What in-sample errors are.
+pub const BARS_IN_SAMPLE_HINT: &str = "Each station's ball as in the tables above";
+/// Axis title.
+pub const STATION_AXIS: &str = "station";
+/// Axis title.
+pub const ERROR_AXIS: &str = "error / mm";
+/// Title of the scatter plots.
+pub const BALL_CENTRES: &str = "Ball centres, 1σ";
+/// On the right of the scatter plots.
+pub const ABOUT_THEIR_MEAN: &str = "about their mean, base frame";
+/// Axis title.
+pub const X_AXIS: &str = "x / mm";
+/// Axis title.
+pub const Y_AXIS: &str = "y / mm";
+/// Axis title.
+pub const Z_AXIS: &str = "z / mm";
+/// Title of the difference table.
+pub const DIFFERENCE: &str = "Difference of the calibrations";
+/// On the right of the difference table.
+pub const DIFFERENCE_HINT: &str = "second relative to first";
+/// Head of the column of angles.
+pub const ROTATION: &str = "rotation";
+/// Head of the column of distances.
+pub const AT_WORKSPACE_POINT: &str = "at workspace point";
+/// Head of the column of significance.
+pub const WITHIN: &str = "within its σ";
+/// Instead of a significance.
+pub const NO_STD: &str = "σ unknown";
+/// In place of the difference table.
+pub const NOTHING_TO_COMPARE: &str = "A second method with a result is needed to compare; the cards above say what each method lacks.";
+/// Title of the published card.
+pub const AS_PUBLISHED: &str = "As published";
+/// Published card: printed error.
+pub const PRINTED_ERROR: &str = "printed error / mm";
+/// Published card: recomputed error.
+pub const RECOMPUTED_ERROR: &str = "error of the printed centres / mm";
+/// Published card: no misprints.
+pub const NO_MISPRINTS: &str = "the printed errors follow from the printed centres";
+/// Row of the distance from the truth.
+pub const FROM_TRUTH: &str = "distance from truth";
+/// Title of a matrix.
+pub const FLANGE_FROM_SENSOR: &str = "flange_from_sensor";
+/// Title of a matrix for a sensor beside the robot.
+pub const BASE_FROM_SENSOR: &str = "base_from_sensor";
+
+/// The headline beside the verdict; the figure follows in the second weight.
+#[must_use]
+pub fn headline(distance_mm: &str) -> String {
+    format!("a point at {distance_mm} mm is known to")
+}
+
+/// The headline's figure.
+#[must_use]
+pub fn headline_figure(std_mm: &str) -> String {
+    format!("± {std_mm} mm")
+}
+
+/// Whose verdict it is.
+#[must_use]
+pub fn verdict_of(method: &str) -> String {
+    format!("verdict on: {method}")
+}
+
+/// The method's name in the comparison, where space is short.
+#[must_use]
+pub const fn compared_method(method: Method) -> &'static str {
+    match method {
+        Method::BallFixedPoint => "Fixed point",
+        Method::BallMaxArcStep => "Published stop",
+        Method::BallMaxArc => "Largest arc",
+        Method::BallBundle => "Bundle",
+    }
+}
+
+/// Beginning of the comparison.
+#[must_use]
+pub fn maximum_error(method: &str) -> String {
+    format!("{method}: maximum error")
+}
+
+/// End of the comparison.
+#[must_use]
+pub fn against(baseline: &str, error_mm: &str) -> String {
+    format!("against {baseline} ({error_mm} mm)")
+}
+
+/// What "maximum error" means.
+pub const MAXIMUM_ERROR_HINT: &str =
+    "As in the paper: the largest coordinate of any station's ball relative to the first station's. A small value alone proves little; see the left-out error";
+
+/// Figures at the right of a method's head.
+#[must_use]
+pub fn method_figures(max_mm: &str, left_out_mm: Option<&str>, std_mm: Option<&str>) -> String {
+    let mut words = format!("max {max_mm}");
+    if let Some(left_out_mm) = left_out_mm {
+        words += &format!(" · left out {left_out_mm}");
+    }
+    if let Some(std_mm) = std_mm {
+        words += &format!(" · σ {std_mm}");
+    }
+    words + " mm"
+}
+
+/// What the figures in a method's head mean.
+pub const METHOD_FIGURES_HINT: &str = "max: largest coordinate of the errors shown\nleft out: RMS over stations, each predicted by the others\nσ: standard deviation of a point in the workspace";
+
+/// Name of a station's tick box.
+#[must_use]
+pub fn use_station(label: &str, method: &str) -> String {
+    format!("Use station {label} ({method})")
+}
+
+/// Name of a station's row.
+#[must_use]
+pub fn station_row(label: &str, method: &str) -> String {
+    format!("Station {label}, {method}")
+}
+
+/// Name of a method's toggle.
+#[must_use]
+pub fn show_method(method: &str) -> String {
+    format!("Show {method}")
+}
+
+/// Name of a method's head, a button that selects it.
+#[must_use]
+pub fn select_method(method: &str) -> String {
+    format!("Select {method} for the inspector")
+}
+
+/// Distance from the truth.
+#[must_use]
+pub fn truth_figures(distance_mm: &str, rotation_deg: &str) -> String {
+    format!("{distance_mm} mm at the workspace point, {rotation_deg}°")
+}
+
+/// A pair of methods.
+#[must_use]
+pub fn pair(first: &str, second: &str) -> String {
+    format!("{first} → {second}")
+}
+
+/// Whether a difference is within its standard deviation.
+#[must_use]
+pub fn within(is_within: bool, in_stds: &str) -> String {
+    format!("{}, {in_stds} σ", if is_within { "yes" } else { "no" })
+}
+
+/// Misprints in the published table.
+#[must_use]
+pub fn misprints(count: usize) -> String {
+    if count == 1 { "1 misprint".to_owned() } else { format!("{count} misprints") }
+}
+
+/// A misprinted coordinate.
+#[must_use]
+pub fn misprint(printed: &str, recomputed: &str) -> String {
+    format!("printed {printed}, but the printed centres give {recomputed}")
+}
+
+/// Readout of a bar or a centre.
+#[must_use]
+pub fn station_readout(label: &str, method: &str, figures: &str) -> String {
+    format!("station {label}, {method}\n{figures} mm")
+}
+
+/// The verdict's reason in one sentence.
+#[must_use]
+pub fn verdict_reason(solution: &Solution, reason: VerdictReason) -> String {
+    match reason {
+        VerdictReason::WorkspacePoint(std_mm) => {
+            format!("The standard deviation of a point in the workspace is {std_mm:.2} mm.")
+        }
+        VerdictReason::LeaveOneOut(error_mm) => format!(
+            "Stations left out are missed by {error_mm:.2} mm RMS, more than the standard deviation promises."
+        ),
+        VerdictReason::Warning(warning_idx) => solution
+            .warnings
+            .get(warning_idx)
+            .map_or_else(String::new, |warning| format!("The figures are small, but: {}", warnings::warning_message(warning))),
+        VerdictReason::NoRedundancy => {
+            "There are only as many stations as unknowns need: nothing is left over to judge by. Add stations.".to_owned()
+        }
+    }
+}
+
+/// The scale of the verdict.
+#[must_use]
+pub fn verdict_scale(good_mm: f64, usable_mm: f64) -> String {
+    format!(
+        "{} up to {good_mm} mm, {} up to {usable_mm} mm.",
+        methods::verdict_name(crate::calibrate::Verdict::Good),
+        methods::verdict_name(crate::calibrate::Verdict::Usable).to_lowercase()
+    )
+}

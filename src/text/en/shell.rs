@@ -1,0 +1,282 @@
+//! Wording of the window's frame: menus, rail, inspector, status line, dialogs.
+
+use crate::calibrate::Mount;
+
+/// The program's name.
+pub const PROGRAM: &str = "Handeye";
+/// Menu.
+pub const FILE: &str = "File";
+/// Menu.
+pub const EDIT: &str = "Edit";
+/// Menu.
+pub const VIEW: &str = "View";
+/// Menu.
+pub const HELP: &str = "Help";
+/// Menu entry and button.
+pub const OPEN: &str = "Open…";
+/// Menu entry.
+pub const OPEN_SAMPLE: &str = "Open sample";
+/// Menu entry.
+pub const SAVE: &str = "Save";
+/// Menu entry.
+pub const SAVE_AS: &str = "Save as…";
+/// Menu entry.
+pub const CLOSE: &str = "Close";
+/// Menu entry.
+pub const QUIT: &str = "Quit";
+/// Menu entry and button.
+pub const UNDO: &str = "Undo";
+/// Menu entry and button.
+pub const REDO: &str = "Redo";
+/// Menu entry.
+pub const SHORTCUTS_AND_ABOUT: &str = "Shortcuts and about";
+/// Menu heading.
+pub const THEME: &str = "Theme";
+/// Theme.
+pub const LIGHT: &str = "Light";
+/// Theme.
+pub const DARK: &str = "Dark";
+/// Theme.
+pub const FOLLOW_SYSTEM: &str = "As the system";
+/// Menu heading.
+pub const SCALE: &str = "Interface scale";
+/// Menu entry.
+pub const INSPECTOR: &str = "Inspector";
+/// Reason of a disabled entry.
+pub const NO_DOCUMENT: &str = "There is no open session.";
+/// Reason of a disabled entry.
+pub const NOTHING_TO_UNDO: &str = "Nothing has been changed.";
+/// Reason of a disabled entry.
+pub const NOTHING_TO_REDO: &str = "Nothing has been undone.";
+/// Title without a document.
+pub const NO_TITLE: &str = "no session";
+/// Name of the dot that marks unsaved changes.
+pub const UNSAVED: &str = "Unsaved changes";
+/// The units in use.
+pub const UNITS: &str = "mm · °";
+/// What the units chip says on hover.
+pub const UNITS_HINT: &str = "Lengths in millimetres, angles in degrees";
+
+/// What the convention chip says on hover.
+#[must_use]
+pub fn convention_hint(formula: &str) -> String {
+    format!("How this robot's controller writes an orientation: {formula}")
+}
+
+/// Undo with what it takes back.
+#[must_use]
+pub fn undo_label(label: &str) -> String {
+    format!("Undo: {label}")
+}
+
+/// Redo with what it brings back.
+#[must_use]
+pub fn redo_label(label: &str) -> String {
+    format!("Redo: {label}")
+}
+
+/// Rail step.
+pub const STEP_SESSION: &str = "Session";
+/// Rail step.
+pub const STEP_ARCS: &str = "Arcs";
+/// Rail step.
+pub const STEP_POSES: &str = "Poses";
+/// Rail step.
+pub const STEP_COMPARE: &str = "Compare";
+/// What the rail's step does.
+pub const STEP_SESSION_HINT: &str = "Open a session and see what it holds";
+/// What the rail's step does.
+pub const STEP_ARCS_HINT: &str = "Every profile with its circle, and the radius along the sweep";
+/// What the rail's step does.
+pub const STEP_POSES_HINT: &str = "The stations' poses, and which of them take part";
+/// What the rail's step does.
+pub const STEP_COMPARE_HINT: &str = "The methods side by side";
+
+/// Heading of the page shown where a step has nothing to show.
+pub const EMPTY_TITLE: &str = "No session is open";
+/// What to do about it.
+pub const EMPTY_HINT: &str = "Open a session file or one of the samples; this page then shows its data.";
+/// Button that leads there.
+pub const CHOOSE_SESSION: &str = "Choose a session";
+
+/// Before the next step's button.
+pub const NEXT: &str = "Next";
+/// Next step.
+pub const NEXT_ARCS: &str = "Look at the arcs";
+/// Next step.
+pub const NEXT_POSES: &str = "Check the poses";
+/// Next step.
+pub const NEXT_COMPARE: &str = "Compare the methods";
+/// Next step.
+pub const NEXT_SAVE: &str = "Save the session…";
+/// Status.
+pub const READING_FILE: &str = "Reading the file …";
+/// Status.
+pub const OUT_OF_DATE: &str = "out of date";
+/// What it means.
+pub const OUT_OF_DATE_HINT: &str = "The session has changed since these results were computed.";
+/// Button.
+pub const CANCEL: &str = "Cancel";
+/// Button.
+pub const DISMISS: &str = "Dismiss";
+/// Name of the progress bar.
+pub const SOLVING: &str = "solving";
+
+/// Progress of the solver.
+#[must_use]
+pub fn solving_progress(done: usize, total: usize) -> String {
+    if total == 0 { SOLVING.to_owned() } else { format!("solving {done} / {total}") }
+}
+
+/// `1 station`, `2 stations`.
+#[must_use]
+pub fn count(number: usize, singular: &str) -> String {
+    if number == 1 { format!("1 {singular}") } else { format!("{number} {singular}s") }
+}
+
+/// What was solved, and in what time.
+#[must_use]
+pub fn summary(num_stations: usize, num_profiles: usize, elapsed_ms: u128) -> String {
+    let elapsed = if elapsed_ms == 0 { "under 1 ms".to_owned() } else { format!("{elapsed_ms} ms") };
+    format!("{}, {}, solved in {elapsed}", count(num_stations, "station"), count(num_profiles, "profile"))
+}
+
+/// Heading of the inspector.
+#[must_use]
+pub fn station_heading(label: &str, step: Option<usize>) -> String {
+    step.map_or_else(|| format!("Station {label}"), |step| format!("Station {label}, step {step}"))
+}
+
+/// Name of the transform that a session is about.
+#[must_use]
+pub const fn transform_name(mount: Mount) -> &'static str {
+    match mount {
+        Mount::OnFlange => "flange_from_sensor",
+        Mount::Fixed => "base_from_sensor",
+    }
+}
+
+/// Row of the inspector.
+pub const FLANGE_POSITION: &str = "flange x y z";
+/// Row of the inspector.
+pub const SIDE_OF_BALL: &str = "side of the ball";
+/// Row of the inspector.
+pub const SECTION_RADIUS: &str = "section radius l";
+/// Row of the inspector.
+pub const ARC: &str = "arc";
+/// Row of the inspector.
+pub const FIT: &str = "fit";
+/// Row of the inspector.
+pub const LARGEST_ARC_AT: &str = "largest arc at y";
+/// Row of the inspector.
+pub const LEFT_OUT: &str = "left out";
+/// What the row means.
+pub const LEFT_OUT_HINT: &str = "Distance between this station's ball and the ball found without it";
+/// Row of the inspector for a reduced point.
+pub const BALL_IN_SENSOR: &str = "ball in sensor";
+/// What the side's ratio means.
+pub const SIDE_HINT: &str = "The side of the laser plane on which the ball's centre lies; the other side costs that many times as much";
+/// Row of the inspector.
+pub const TRANSLATION: &str = "x y z";
+/// Row of the inspector.
+pub const TRANSLATION_STD: &str = "± x y z";
+/// The station takes no part.
+pub const STATION_LEFT_OUT: &str = "This station does not take part.";
+/// The station was not used by the method.
+pub const STATION_NOT_USED: &str = "This method did not use this station.";
+/// Where there is no uncertainty.
+pub const NO_UNCERTAINTY: &str = "Nothing is left over to judge the accuracy by.";
+/// Before there is a result.
+pub const NO_RESULTS: &str = "Not solved yet.";
+/// Method picker.
+pub const METHOD: &str = "Method shown";
+/// Menu button.
+pub const COPY: &str = "Copy";
+/// Menu entry.
+pub const COPY_MATRIX: &str = "Matrix";
+/// Menu entry.
+pub const COPY_POSE: &str = "Position and angles";
+/// Menu entry.
+pub const COPY_QUATERNION: &str = "Position and quaternion";
+/// Heading of the warnings.
+pub const FINDINGS: &str = "Findings";
+/// No warnings.
+pub const NO_FINDINGS: &str = "Nothing to remark.";
+
+/// Findings of a kind that are not listed.
+#[must_use]
+pub fn more_of_a_kind(number: usize, code: &str) -> String {
+    format!("and {number} more: {code}")
+}
+
+/// Section of an arc, in words.
+#[must_use]
+pub fn arc_extent(angle_deg: f64, num_inliers: usize, num_points: usize) -> String {
+    format!("{angle_deg:.0}°, {num_inliers} of {num_points} points")
+}
+
+/// Row of the angles, by the maker's names.
+#[must_use]
+pub fn angle_names(names: [&str; 3]) -> String {
+    names.join(" ")
+}
+
+/// Row of the angles' standard deviations.
+#[must_use]
+pub fn angle_std_names(names: [&str; 3]) -> String {
+    format!("± {}", names.join(" "))
+}
+
+/// Heading of the question before changes are lost.
+#[must_use]
+pub fn save_changes_to(title: &str) -> String {
+    format!("Save the changes to {title}?")
+}
+
+/// The question's explanation.
+pub const SAVE_CHANGES_HINT: &str = "Without saving they are lost.";
+/// Button.
+pub const DISCARD: &str = "Discard";
+/// Heading of the save dialog.
+pub const SAVE_AS_TITLE: &str = "Save the session as";
+/// Name of the path field.
+pub const FILE_PATH: &str = "File path";
+/// Told where the system offers no file dialog.
+pub const NO_FILE_DIALOG: &str = "There is no system file dialog here: type the path.";
+/// The file filter's name.
+pub const FILE_FILTER: &str = "Handeye session";
+
+/// Heading of the help window.
+pub const SHORTCUTS: &str = "Shortcuts";
+/// Heading of the help window.
+pub const ABOUT: &str = "About";
+/// The program in a sentence.
+pub const ABOUT_TEXT: &str = "A workbench for the hand-eye calibration of robot-mounted laser profilers, after Lin and Mu (2019).";
+/// Shortcut's explanation.
+pub const KEYS_RAIL: &str = "go to a step of the rail";
+/// Shortcut's explanation.
+pub const KEYS_LIST: &str = "previous or next station or profile";
+/// Shortcut's explanation.
+pub const KEYS_SCALE: &str = "make the interface larger or smaller";
+/// Shortcut's explanation.
+pub const KEYS_PLOT: &str = "fit the view of a plot";
+/// The keys.
+pub const DOUBLE_CLICK: &str = "Double click";
+
+/// Version line.
+#[must_use]
+pub fn version(version: &str) -> String {
+    format!("Version {version}")
+}
+
+/// The one line told where no window can be opened for want of a display.
+pub const NO_DISPLAY: &str = "the window needs a display, and there is none here (neither DISPLAY nor WAYLAND_DISPLAY is set)";
+/// The one line told where a library is missing.
+pub const MISSING_LIBRARIES: &str =
+    "the window could not be opened; on Debian and Ubuntu: apt install libxkbcommon-x11-0 libxcursor1 libxi6 libgl1 libegl1";
+/// The one line told where there is no OpenGL.
+pub const NO_OPENGL: &str = "the window needs OpenGL; on Debian and Ubuntu: apt install libgl1 libegl1 libgl1-mesa-dri";
+/// The one line told where the display does not answer.
+pub const DEAD_DISPLAY: &str = "the window could not reach the display";
+/// What works all the same.
+pub const WITHOUT_WINDOW: &str = "`handeye solve FILE` and `handeye report FILE` work without a window";

@@ -1,0 +1,151 @@
+//! Wording of the start page and the session's overview.
+
+use crate::calibrate::Mount;
+use crate::session::Target;
+
+/// Heading of the start page.
+pub const TITLE: &str = "Calibrate a laser profiler on a robot";
+/// What this is about, in a sentence.
+pub const LEAD: &str = "A ball, a handful of robot poses and the profiles seen from them give the sensor's place on the flange. Open a session of yours, or learn with a sample.";
+/// Heading.
+pub const SAMPLES: &str = "Samples";
+/// Heading.
+pub const OPEN_FILE: &str = "Open a session file";
+/// Heading with a document open.
+pub const OPEN_ANOTHER: &str = "Open another session";
+/// Name of the path field.
+pub const PATH: &str = "Session file path";
+/// Hint inside the empty path field.
+pub const PATH_HINT: &str = "/path/to/session.json";
+/// Button beside the path field.
+pub const OPEN_PATH: &str = "Open";
+/// Hint below.
+pub const DROP_HINT: &str = "Or drop a session file anywhere on this window.";
+/// Heading.
+pub const RECENT: &str = "Recent files";
+/// Over a file being dragged in.
+pub const DROP_HERE: &str = "Drop to open";
+/// Reading the samples.
+pub const READING: &str = "reading …";
+
+/// Name and one-line lesson of a sample.
+#[must_use]
+pub fn sample_lesson(file_name: &str) -> (&'static str, &'static str) {
+    match file_name {
+        "lin-mu-2019-table-1.json" => ("Lin & Mu 2019, table 1", "Fixed point: the figures printed in the paper, re-computed"),
+        "lin-mu-2019-table-2.json" => ("Lin & Mu 2019, table 2", "Largest arc: the figures printed in the paper, re-computed"),
+        "clean-sweeps.json" => ("Clean sweeps", "A calibration as it should be: all methods agree"),
+        "dirty-profiles.json" => ("Dirty profiles", "Glints, gaps and a fixture in view: outliers are found and left out"),
+        "few-rotations.json" => ("Few rotations", "Small residuals that prove nothing: orientations too much alike"),
+        "near-largest-arc.json" => ("Near the largest arc", "Where the fixed-point method goes blind, and the whole curve does not"),
+        "one-bad-pose.json" => ("One bad pose", "A mistyped pose: leaving each station out in turn finds it"),
+        _ => ("Sample", "A sample session"),
+    }
+}
+
+/// Sizes of a session.
+#[must_use]
+pub fn sizes(num_stations: usize, num_captures: usize, points_only: bool) -> String {
+    use super::shell::count;
+    if points_only {
+        format!("{}, reduced points", count(num_stations, "station"))
+    } else {
+        format!("{}, {}", count(num_stations, "station"), count(num_captures, "profile"))
+    }
+}
+
+/// Name of a sample's button.
+#[must_use]
+pub fn open_sample(name: &str) -> String {
+    format!("Open sample {name}")
+}
+
+/// Heading.
+pub const NOTES: &str = "Notes";
+/// No notes.
+pub const NO_NOTES: &str = "No notes.";
+/// Heading.
+pub const SETUP: &str = "Robot, sensor and target";
+/// Heading.
+pub const DATA: &str = "Data";
+/// Row.
+pub const ROBOT: &str = "robot";
+/// Row.
+pub const CONVENTION: &str = "orientation";
+/// Row.
+pub const POSITION_STD: &str = "position, 1σ";
+/// Row.
+pub const ORIENTATION_STD: &str = "orientation, 1σ";
+/// Row.
+pub const SENSOR: &str = "sensor";
+/// Row.
+pub const PROFILE_STD: &str = "profile point, 1σ";
+/// Row.
+pub const REFERENCE_DISTANCE: &str = "accuracy stated at";
+/// Row.
+pub const TARGET: &str = "target";
+/// Row.
+pub const MOUNT: &str = "sensor mounted";
+/// Row.
+pub const STATIONS: &str = "stations";
+/// Row.
+pub const CAPTURES: &str = "captures";
+/// Row.
+pub const TRUTH: &str = "truth";
+/// Row.
+pub const PUBLISHED: &str = "printed figures";
+/// Value.
+pub const KNOWN: &str = "known (simulated)";
+/// Value.
+pub const NOT_KNOWN: &str = "not known";
+/// Value.
+pub const NONE: &str = "none";
+/// Value.
+pub const YES: &str = "in the file";
+/// Value of an unknown quantity.
+pub const NOT_STATED: &str = "not stated";
+/// Row.
+pub const FILE: &str = "file";
+/// Value where a session has no file.
+pub const NOT_SAVED: &str = "not saved yet";
+
+/// Stations in all and those taking part.
+#[must_use]
+pub fn stations_in_use(num_enabled: usize, num_stations: usize) -> String {
+    if num_enabled == num_stations {
+        format!("{num_stations}, all in use")
+    } else {
+        format!("{num_stations}, {num_enabled} in use")
+    }
+}
+
+/// Profiles and reduced points.
+#[must_use]
+pub fn captures(num_profiles: usize, num_points: usize) -> String {
+    use super::shell::count;
+    match (num_profiles, num_points) {
+        (profiles, 0) => count(profiles, "profile"),
+        (0, points) => count(points, "reduced point"),
+        (profiles, points) => format!("{}, {}", count(profiles, "profile"), count(points, "reduced point")),
+    }
+}
+
+/// What was measured.
+#[must_use]
+pub fn target(target: &Target) -> String {
+    match target {
+        Target::Ball { radius_mm } => format!("ball, radius {radius_mm} mm"),
+        Target::RightAnglePlate => "right-angle plate".to_owned(),
+        Target::Point => "point".to_owned(),
+        Target::Rgbd { sequence } => format!("RGB-D sequence {sequence}"),
+    }
+}
+
+/// Where the sensor is.
+#[must_use]
+pub const fn mount(mount: Mount) -> &'static str {
+    match mount {
+        Mount::OnFlange => "on the flange",
+        Mount::Fixed => "beside the robot, fixed",
+    }
+}

@@ -1,0 +1,126 @@
+//! What menus, buttons and shortcuts offer: wording, shortcut, and why it may be unavailable stand here once.
+
+use egui::{Key, KeyboardShortcut, Modifiers};
+
+use crate::app::Workbench;
+use crate::text::shell as words;
+
+use super::rail::Step;
+
+/// Something the window itself does, or passes on to the workbench as a command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Action {
+    /// Asks for a file and opens it.
+    Open,
+    /// Opens a sample.
+    OpenSample(usize),
+    /// Saves to the session's file, asking for one where there is none.
+    Save,
+    /// Asks for a file and saves there.
+    SaveAs,
+    /// Goes back to the start page.
+    Close,
+    /// Closes the window.
+    Quit,
+    /// Takes the last edit back.
+    Undo,
+    /// Brings back what was undone.
+    Redo,
+    /// Shows or hides the help window.
+    Help,
+    /// Shows or hides the inspector.
+    Inspector,
+    /// Goes to a step of the rail.
+    GoTo(Step),
+}
+
+/// All actions with a shortcut. Those with more modifiers come first, as a shortcut also matches with fewer.
+const WITH_SHORTCUT: [Action; 8] = [
+    Action::SaveAs,
+    Action::Redo,
+    Action::Open,
+    Action::Save,
+    Action::Undo,
+    Action::Close,
+    Action::Quit,
+    Action::Help,
+];
+
+impl Action {
+    /// Its shortcut, if it has one.
+    #[must_use]
+    pub const fn shortcut(self) -> Option<KeyboardShortcut> {
+        let (modifiers, key) = match self {
+            Self::Open => (Modifiers::COMMAND, Key::O),
+            Self::Save => (Modifiers::COMMAND, Key::S),
+            Self::SaveAs => (CTRL_SHIFT, Key::S),
+            Self::Close => (Modifiers::COMMAND, Key::W),
+            Self::Quit => (Modifiers::COMMAND, Key::Q),
+            Self::Undo => (Modifiers::COMMAND, Key::Z),
+            Self::Redo => (CTRL_SHIFT, Key::Z),
+            Self::Help => (Modifiers::NONE, Key::F1),
+            Self::OpenSample(_) | Self::Inspector | Self::GoTo(_) => return None,
+        };
+        Some(KeyboardShortcut::new(modifiers, key))
+    }
+
+    /// What menus and the help window call it.
+    #[must_use]
+    pub fn label(self, workbench: &Workbench) -> String {
+        let history = workbench.document().map(|document| &document.history);
+        match self {
+            Self::Open => words::OPEN.to_owned(),
+            Self::OpenSample(_) => words::OPEN_SAMPLE.to_owned(),
+            Self::Save => words::SAVE.to_owned(),
+            Self::SaveAs => words::SAVE_AS.to_owned(),
+            Self::Close => words::CLOSE.to_owned(),
+            Self::Quit => words::QUIT.to_owned(),
+            Self::Undo => history
+                .and_then(|history| history.undo_label())
+                .map_or_else(|| words::UNDO.to_owned(), words::undo_label),
+            Self::Redo => history
+                .and_then(|history| history.redo_label())
+                .map_or_else(|| words::REDO.to_owned(), words::redo_label),
+            Self::Help => words::SHORTCUTS_AND_ABOUT.to_owned(),
+            Self::Inspector => words::INSPECTOR.to_owned(),
+            Self::GoTo(step) => step.name().to_owned(),
+        }
+    }
+
+    /// Why it cannot be done now; `None` if it can.
+    #[must_use]
+    pub fn refusal(self, workbench: &Workbench) -> Option<&'static str> {
+        let document = workbench.document();
+        match self {
+            Self::Save | Self::SaveAs | Self::Close => document.is_none().then_some(words::NO_DOCUMENT),
+            Self::Undo => document
+                .is_none_or(|document| document.history.undo_label().is_none())
+                .then_some(words::NOTHING_TO_UNDO),
+            Self::Redo => document
+                .is_none_or(|document| document.history.redo_label().is_none())
+                .then_some(words::NOTHING_TO_REDO),
+            Self::Open | Self::OpenSample(_) | Self::Quit | Self::Help | Self::Inspector | Self::GoTo(_) => None,
+        }
+    }
+}
+
+const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+
+/// The actions whose keys were pressed in this frame.
+pub fn pressed(ctx: &egui::Context, workbench: &Workbench) -> Vec<Action> {
+    let mut pressed: Vec<Action> = WITH_SHORTCUT
+        .into_iter()
+        .filter(|action| {
+            action.shortcut().is_some_and(|shortcut| ctx.input_mut(|input| input.consume_shortcut(&shortcut)))
+        })
+        .filter(|action| action.refusal(workbench).is_none())
+        .collect();
+    // Plain digits belong to a text field while it has the focus.
+    if !ctx.egui_wants_keyboard_input() {
+        let digits = [Key::Num1, Key::Num2, Key::Num3, Key::Num4];
+        pressed.extend(Step::ALL.into_iter().zip(digits).filter_map(|(step, key)| {
+            ctx.input_mut(|input| input.consume_key(Modifiers::NONE, key)).then_some(Action::GoTo(step))
+        }));
+    }
+    pressed
+}

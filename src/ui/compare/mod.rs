@@ -1,0 +1,14 @@
+//! Step 5: the methods side by side, their errors, and how their results differ.
+
+mod bars;
+mod cards;
+mod differences;
+mod model;
+mod panel;
+mod paper;
+mod published;
+mod scatter;
+mod table;
+mod verdict;
+
+pub use panel::{CompareState, show};

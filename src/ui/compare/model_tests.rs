@@ -1,0 +1,132 @@
+//! The comparison's model against solutions made by hand.
+
+use nalgebra::{Matrix6, UnitQuaternion};
+
+use super::*;
+use crate::calibrate::{RmsMax, Side, SolveError, Uncertainty, Warning};
+use crate::geometry::Transform;
+use crate::session::model::UnknownFields;
+use crate::session::{Robot, Sensor, Station, Target, Truth};
+
+fn session() -> Session {
+    let station = |label: &str| Station {
+        label: label.to_owned(),
+        enabled: true,
+        side: crate::calibrate::SideChoice::Auto,
+        edge: None,
+        captures: Vec::new(),
+        unknown: UnknownFields::new(),
+    };
+    Session {
+        name: "hand-made".to_owned(),
+        notes: String::new(),
+        robot: Robot::default(),
+        sensor: Sensor::default(),
+        target: Target::Ball { radius_mm: 15.0 },
+        mount: Mount::OnFlange,
+        stations: ["a", "b", "c"].map(station).to_vec(),
+        published: None,
+        truth: Some(Truth {
+            flange_from_sensor: Transform::identity(),
+            ball_in_base_mm: Vec3::zeros(),
+            unknown: UnknownFields::new(),
+        }),
+        unknown: UnknownFields::new(),
+    }
+}
+
+fn solution(method: Method, shift_mm: f64, errors_mm: &[Vec3]) -> Solution {
+    let mean: Vec3 = errors_mm.iter().sum::<Vec3>() / 3.0;
+    Solution {
+        method,
+        mount: Mount::OnFlange,
+        flange_from_sensor: Transform::from_parts(Vec3::new(shift_mm, 0.0, 0.0), UnitQuaternion::identity()),
+        ball_in_base_mm: Vec3::zeros(),
+        scatter: RmsMax::default(),
+        leave_one_out: Some(RmsMax { rms_mm: 0.05, max_mm: 0.08 }),
+        uncertainty: Some(Uncertainty {
+            covariance: Matrix6::identity(),
+            translation_std_mm: Vec3::zeros(),
+            rotation_std_rad: Vec3::zeros(),
+            workspace_point_std_mm: 0.06,
+            reference_point_in_sensor_mm: Vec3::new(0.0, 0.0, 60.0),
+        }),
+        // Station b is missing, as if it had been skipped.
+        stations: [0, 2]
+            .into_iter()
+            .zip(errors_mm)
+            .map(|(station_idx, error)| StationSolution {
+                station_idx,
+                label: String::new(),
+                side: Side::Plus,
+                side_cost_ratio: None,
+                ball_in_sensor_mm: Vec3::zeros(),
+                ball_in_sensor_std_mm: None,
+                ball_in_base_mm: *error,
+                error_from_first_mm: *error,
+                error_from_mean_mm: error - mean,
+                leave_one_out_mm: None,
+                sweep: None,
+            })
+            .collect(),
+        rotation_span_rad: 1.0,
+        warnings: vec![Warning::FewStations { num_stations: 2, recommended: 8 }],
+        num_iterations: 3,
+    }
+}
+
+fn results() -> Vec<MethodResult> {
+    let errors = |size: f64| [Vec3::zeros(), Vec3::new(size, -size / 2.0, 0.0)];
+    let ok = |method, shift, size| MethodResult { method, outcome: Ok(solution(method, shift, &errors(size))) };
+    vec![
+        ok(Method::BallFixedPoint, 0.3, 0.2),
+        MethodResult {
+            method: Method::BallMaxArcStep,
+            outcome: Err(SolveError::TooFewSweeps { found: 0, needed: 3, steps: 3 }),
+        },
+        ok(Method::BallMaxArc, 0.1, 0.05),
+    ]
+}
+
+#[test]
+fn rows_are_matched_by_the_stations_index() {
+    let model = CompareModel::new(&session(), &results());
+    let table = model.columns[0].outcome.as_ref().expect("a table");
+    let used: Vec<bool> = table.rows.iter().map(|row| row.used.is_some()).collect();
+    assert_eq!(used, [true, false, true]);
+    assert!((table.max_error_mm(ErrorReference::FirstStation) - 0.2).abs() < 1e-12);
+    let truth = table.truth.expect("a simulated session");
+    assert!((truth.workspace_point_mm - 0.3).abs() < 1e-12 && truth.rotation_rad.abs() < 1e-12);
+}
+
+#[test]
+fn the_columns_keep_the_papers_order_and_say_why_one_is_empty() {
+    let model = CompareModel::new(&session(), &results());
+    let methods: Vec<Method> = model.columns.iter().map(|column| column.method).collect();
+    assert_eq!(methods, [Method::BallFixedPoint, Method::BallMaxArc, Method::BallMaxArcStep]);
+    let reason = SolveError::TooFewSweeps { found: 0, needed: 3, steps: 3 }.to_string();
+    assert_eq!(model.columns[2].outcome.as_ref().expect_err("refused"), &reason);
+}
+
+#[test]
+fn the_band_judges_the_best_method_and_carries_its_warnings() {
+    let band = CompareModel::new(&session(), &results()).band.expect("a result");
+    assert_eq!((band.method, band.verdict), (Method::BallMaxArc, Verdict::Usable));
+    assert_eq!(band.workspace_point, Some((60.0, 0.06)));
+    assert_eq!(band.warnings.len(), 1);
+}
+
+#[test]
+fn differences_go_from_each_method_to_the_next() {
+    let differences = CompareModel::new(&session(), &results()).differences;
+    assert_eq!(differences.len(), 1);
+    assert!((differences[0].difference.workspace_point_mm - 0.2).abs() < 1e-12);
+    let in_stds = differences[0].difference.in_stds.expect("both have uncertainties");
+    assert!((in_stds - 0.2 / (0.06 * 2.0_f64.sqrt())).abs() < 1e-9);
+}
+
+#[test]
+fn without_results_there_is_nothing_to_show() {
+    let model = CompareModel::new(&session(), &[]);
+    assert!(model.columns.is_empty() && model.band.is_none() && model.differences.is_empty());
+}

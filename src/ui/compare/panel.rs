@@ -1,0 +1,239 @@
+//! The comparison: verdict, toggles, one card a method, plots, differences.
+
+use std::rc::Rc;
+
+use egui::{Align, Button, Layout, ScrollArea, Ui, UiBuilder, vec2};
+
+use crate::app::{Document, Results};
+use crate::calibrate::Method;
+use crate::text::compare as text;
+use crate::text::methods::{method_description, method_short_name};
+use crate::ui::{PanelContext, theme, widgets};
+
+use super::bars::{self, BarSource};
+use super::cards::{self, CardOptions};
+use super::model::{COLUMN_ORDER, CompareModel, ErrorReference, MethodTable};
+use super::scatter::{self, ScatterView};
+use super::{differences, published, table, verdict};
+
+/// A card narrower than this clips its numbers, points.
+const MIN_CARD_WIDTH: f32 = 440.0;
+/// Below this width the plots stand above each other.
+const PLOTS_SIDE_BY_SIDE_FROM: f32 = 720.0;
+/// Least height of a plot's card.
+const MIN_PLOT_HEIGHT: f32 = 250.0;
+/// Greatest height of a plot's card.
+const MAX_PLOT_HEIGHT: f32 = 380.0;
+/// Room kept below the plots for the difference table.
+const DIFFERENCE_HEIGHT: f32 = 150.0;
+
+/// What the panel remembers between frames.
+#[derive(Debug, Default)]
+pub struct CompareState {
+    /// The user's choice of methods; without one, as many as fit side by side.
+    shown: Option<Vec<Method>>,
+    reference: ErrorReference,
+    has_paper_layout: bool,
+    has_matrices: bool,
+    is_explained: bool,
+    bar_source: BarSource,
+    scatter: ScatterView,
+    model: Option<((u64, u64), Rc<CompareModel>)>,
+}
+
+impl CompareState {
+    fn model(&mut self, document: &Document, results: &Results) -> Rc<CompareModel> {
+        let revisions = (document.revision, results.revision);
+        match &self.model {
+            Some((known, model)) if *known == revisions => Rc::clone(model),
+            _ => {
+                let model = Rc::new(CompareModel::new(&document.session, &results.methods));
+                self.model = Some((revisions, Rc::clone(&model)));
+                model
+            }
+        }
+    }
+
+    /// The paper's two methods, and the bundle where three cards have room beside each other.
+    fn shown(&self, width: f32) -> Vec<Method> {
+        self.shown.clone().unwrap_or_else(|| COLUMN_ORDER[..if cards_a_row(width) >= 3 { 3 } else { 2 }].to_vec())
+    }
+}
+
+fn cards_a_row(width: f32) -> usize {
+    let mut count = 1;
+    let mut used = MIN_CARD_WIDTH;
+    while used + theme::GAP + MIN_CARD_WIDTH <= width && count < COLUMN_ORDER.len() {
+        used += theme::GAP + MIN_CARD_WIDTH;
+        count += 1;
+    }
+    count
+}
+
+/// Shows the panel.
+pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut CompareState) {
+    let workbench = context.workbench;
+    let Some(document) = workbench.document() else {
+        empty(ui, text::NO_SESSION);
+        return;
+    };
+    let Some(results) = workbench.results() else {
+        empty(ui, text::SOLVING);
+        return;
+    };
+    if let Some(refusal) = &results.refusal {
+        empty(ui, refusal);
+        return;
+    }
+    let model = state.model(document, results);
+    let is_out_of_date = !workbench.results_are_current();
+    let height = ui.available_height();
+    // The scroll bar gets the panel's margin, so that it covers no numbers.
+    let area = ui.available_rect_before_wrap();
+    let mut page = ui.new_child(UiBuilder::new().max_rect(area.with_max_x(area.right() + theme::GAP - 2.0)));
+    ScrollArea::vertical().id_salt("compare").auto_shrink([false, false]).show(&mut page, |ui| {
+        ui.set_max_width(area.width());
+        let top = ui.cursor().top();
+        ui.spacing_mut().item_spacing.y = theme::GAP;
+        verdict::show(ui, &model, is_out_of_date, &mut state.is_explained);
+        let width = ui.available_width();
+        let shown = state.shown(width);
+        toggles(ui, &model, &shown, state);
+        if is_out_of_date {
+            ui.set_opacity(0.6);
+        }
+        method_cards(ui, &model, &shown, context, state);
+        if let Some(printed) = &model.published {
+            published::show(ui, printed);
+        }
+        let tables: Vec<(Method, &MethodTable)> = model
+            .columns
+            .iter()
+            .filter(|column| shown.contains(&column.method))
+            .filter_map(|column| Some((column.method, column.outcome.as_ref().ok()?)))
+            .collect();
+        if !tables.is_empty() {
+            let left_over = height - (ui.cursor().top() - top) - DIFFERENCE_HEIGHT;
+            plots(ui, &tables, left_over.clamp(MIN_PLOT_HEIGHT, MAX_PLOT_HEIGHT), state);
+            differences::show(ui, &model.differences, shown.contains(&Method::BallMaxArcStep));
+        }
+    });
+    ui.advance_cursor_after_rect(area);
+}
+
+fn empty(ui: &mut Ui, sentence: &str) {
+    let area = ui.available_rect_before_wrap();
+    let mut inside = ui.new_child(UiBuilder::new().max_rect(area).layout(Layout::top_down(Align::Center)));
+    inside.add_space((area.height() * 0.4).max(0.0));
+    let words = theme::dim(&inside, sentence);
+    inside.label(words);
+    ui.advance_cursor_after_rect(area);
+}
+
+fn toggles(ui: &mut Ui, model: &CompareModel, shown: &[Method], state: &mut CompareState) {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(5.0, 6.0);
+        ui.spacing_mut().button_padding.x = 8.0;
+        ui.label(theme::dim(ui, text::SHOW));
+        for column in &model.columns {
+            let method = column.method;
+            let is_shown = shown.contains(&method);
+            let name = format!("{} {}", theme::method_symbol(method), method_short_name(method));
+            let button = ui.add(Button::new(name).selected(is_shown)).on_hover_text(method_description(method));
+            button.widget_info(|| {
+                let name = text::show_method(method_short_name(method));
+                egui::WidgetInfo::selected(egui::Role::Button, true, is_shown, name)
+            });
+            if button.clicked() {
+                let chosen = |other: Method| if other == method { !is_shown } else { shown.contains(&other) };
+                state.shown = Some(COLUMN_ORDER.into_iter().filter(|method| chosen(*method)).collect());
+            }
+        }
+        ui.add_space(2.0);
+        ui.selectable_value(&mut state.reference, ErrorReference::FirstStation, text::FROM_FIRST)
+            .on_hover_text(text::FROM_FIRST_HINT);
+        ui.selectable_value(&mut state.reference, ErrorReference::Mean, text::ABOUT_MEAN)
+            .on_hover_text(text::ABOUT_MEAN_HINT);
+        ui.add_space(2.0);
+        ui.toggle_value(&mut state.has_paper_layout, text::PAPER_LAYOUT);
+        ui.toggle_value(&mut state.has_matrices, text::MATRICES);
+        ui.add_space(2.0);
+        table::tint_legend(ui);
+    });
+}
+
+fn method_cards(
+    ui: &mut Ui,
+    model: &CompareModel,
+    shown: &[Method],
+    context: &mut PanelContext<'_>,
+    state: &CompareState,
+) {
+    let columns: Vec<_> = model.columns.iter().filter(|column| shown.contains(&column.method)).collect();
+    let options = CardOptions {
+        reference: state.reference,
+        has_paper_layout: state.has_paper_layout,
+        has_matrix: state.has_matrices,
+    };
+    let width = ui.available_width();
+    let per_row = cards_a_row(width).min(columns.len()).max(1);
+    #[expect(clippy::cast_precision_loss, reason = "at most four cards")]
+    let card_width = (width - theme::GAP * (per_row - 1) as f32) / per_row as f32;
+    for row in columns.chunks(per_row) {
+        ui.horizontal_top(|ui| {
+            ui.spacing_mut().item_spacing.x = theme::GAP;
+            for column in row {
+                ui.allocate_ui_with_layout(vec2(card_width, 0.0), Layout::top_down(Align::Min), |ui| {
+                    ui.set_width(card_width);
+                    cards::show(ui, column, options, context.selection, context.commands);
+                });
+            }
+        });
+    }
+}
+
+fn plots(ui: &mut Ui, tables: &[(Method, &MethodTable)], height: f32, state: &mut CompareState) {
+    let width = ui.available_width();
+    if width < PLOTS_SIDE_BY_SIDE_FROM {
+        bars_card(ui, tables, height, state);
+        scatter_card(ui, tables, height, &mut state.scatter);
+        return;
+    }
+    let area = egui::Rect::from_min_size(ui.cursor().min, vec2(width, height));
+    let (left, right) = area.split_left_right_at_x(area.left() + ((width - theme::GAP) * 0.455).round());
+    bars_card(&mut ui.new_child(UiBuilder::new().max_rect(left)), tables, height, state);
+    let right = right.with_min_x(right.left() + theme::GAP);
+    scatter_card(&mut ui.new_child(UiBuilder::new().max_rect(right)), tables, height, &mut state.scatter);
+    ui.allocate_rect(area, egui::Sense::hover());
+}
+
+fn bars_card(ui: &mut Ui, tables: &[(Method, &MethodTable)], height: f32, state: &mut CompareState) {
+    let has_left_out = tables.iter().any(|(_, table)| table.leave_one_out_rms_mm.is_some());
+    let source = if has_left_out { state.bar_source } else { BarSource::InSample };
+    let reference = state.reference;
+    let right = |ui: &mut Ui| {
+        ui.spacing_mut().interact_size.y = 22.0;
+        ui.spacing_mut().button_padding = vec2(8.0, 2.0);
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let choose = |ui: &mut Ui, choice: BarSource, is_possible: bool, name: &str, hint: &str| {
+            let button = Button::selectable(source == choice, name);
+            ui.add_enabled(is_possible, button).on_hover_text(hint).clicked()
+        };
+        if choose(ui, BarSource::InSample, true, text::BARS_IN_SAMPLE, text::BARS_IN_SAMPLE_HINT) {
+            state.bar_source = BarSource::InSample;
+        }
+        if choose(ui, BarSource::LeftOut, has_left_out, text::BARS_LEFT_OUT, text::BARS_LEFT_OUT_HINT) {
+            state.bar_source = BarSource::LeftOut;
+        }
+    };
+    widgets::card_with_height(ui, text::ERROR_PER_STATION, height, right, |ui| {
+        bars::show(ui, tables, source, reference);
+    });
+}
+
+fn scatter_card(ui: &mut Ui, tables: &[(Method, &MethodTable)], height: f32, view: &mut ScatterView) {
+    let right = |ui: &mut Ui| {
+        ui.label(theme::dim(ui, text::ABOUT_THEIR_MEAN));
+    };
+    widgets::card_with_height(ui, text::BALL_CENTRES, height, right, |ui| scatter::show(ui, tables, view));
+}

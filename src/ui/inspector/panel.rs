@@ -1,0 +1,226 @@
+//! The inspector's sections, one below the other.
+
+use egui::{Align, ComboBox, Grid, Layout, RichText, ScrollArea, Ui};
+
+use crate::app::{Document, Results};
+use crate::calibrate::{self, Method, Solution, StationSolution};
+use crate::fit::ArcFit;
+use crate::session::Reading;
+use crate::text::methods::method_short_name;
+use crate::text::shell as words;
+use crate::ui::widgets::{fixed, number_text, signed, value_row};
+use crate::ui::{PanelContext, theme};
+
+use super::{findings, model};
+
+/// Draws the inspector.
+pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let Some(document) = context.workbench.document() else { return };
+    let results = context.workbench.results();
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        ui.add_space(16.0);
+        let method = context.selection.method;
+        let outcome = results.and_then(|results| results.method(method)).map(|result| &result.outcome);
+        let solution = outcome.and_then(|outcome| outcome.as_ref().ok());
+        capture_section(ui, context, document, results, solution);
+        ui.add_space(16.0);
+        method_header(ui, context, document);
+        ui.add_space(4.0);
+        match (outcome, results.and_then(|results| results.refusal.as_deref())) {
+            (Some(Ok(solution)), _) => solution_section(ui, document, solution),
+            (Some(Err(error)), _) => refusal(ui, &error.to_string()),
+            (None, Some(reason)) => refusal(ui, reason),
+            (None, None) => {
+                ui.label(theme::dim(ui, words::NO_RESULTS));
+            }
+        }
+        ui.add_space(16.0);
+    });
+}
+
+fn refusal(ui: &mut Ui, reason: &str) {
+    let color = theme::palette(ui).bad;
+    ui.horizontal_top(|ui| {
+        ui.label(RichText::new("✖").color(color));
+        ui.add(egui::Label::new(reason).wrap());
+    });
+}
+
+fn capture_section(
+    ui: &mut Ui,
+    context: &PanelContext<'_>,
+    document: &Document,
+    results: Option<&Results>,
+    solution: Option<&Solution>,
+) {
+    let (station_idx, capture_idx) = (context.selection.station_idx, context.selection.capture_idx);
+    let Some(station) = document.session.stations.get(station_idx) else { return };
+    let step = (station.captures.len() > 1).then_some(capture_idx + 1);
+    ui.label(theme::strong(words::station_heading(&station.label, step)));
+    ui.add_space(4.0);
+    if let Some(capture) = station.captures.get(capture_idx) {
+        let position = capture.base_from_flange.translation_mm();
+        let convention = document.session.robot.pose_convention;
+        let angles = convention.angles_deg_from_rotation(&capture.base_from_flange.rotation());
+        triple_row(ui, words::FLANGE_POSITION, [position.x, position.y, position.z].map(|mm| fixed(mm, 2)), "mm");
+        triple_row(ui, &words::angle_names(convention.angle_names), angles.map(|deg| fixed(deg, 2)), "°");
+    }
+    if !station.enabled {
+        ui.label(theme::dim(ui, words::STATION_LEFT_OUT));
+    }
+    let num_points = station.captures.get(capture_idx).map_or(0, |capture| match &capture.reading {
+        Reading::Profile(profile) => profile.len(),
+        Reading::Point(_) => 1,
+    });
+    let reading = results.and_then(|results| results.measured.reading(station_idx, capture_idx));
+    match reading {
+        Some(calibrate::Reading::Arc(arc)) => arc_rows(ui, arc, num_points),
+        Some(calibrate::Reading::Refused(reason)) => refusal(ui, &reason.to_string()),
+        Some(calibrate::Reading::Point(point)) => {
+            triple_row(ui, words::BALL_IN_SENSOR, [point.x, point.y, point.z].map(|mm| fixed(mm, 3)), "mm");
+        }
+        None => {}
+    }
+    let Some(solution) = solution else { return };
+    match solution.stations.iter().find(|solved| solved.station_idx == station_idx) {
+        Some(solved) => station_rows(ui, solved),
+        None if station.enabled => {
+            ui.label(theme::dim(ui, words::STATION_NOT_USED));
+        }
+        None => {}
+    }
+}
+
+fn arc_rows(ui: &mut Ui, arc: &ArcFit, num_points: usize) {
+    let [_, _, radius_std_mm] = arc.std_mm();
+    let radius = format!("{} ± {} mm", fixed(arc.circle.radius_mm, 3), fixed(radius_std_mm, 3));
+    value_row(ui, words::SECTION_RADIUS, radius).on_hover_text(format!("{} mm", arc.circle.radius_mm));
+    let extent = words::arc_extent(arc.angle_rad.to_degrees(), arc.num_inliers(), num_points);
+    value_row(ui, words::ARC, extent);
+    value_row(ui, words::FIT, format!("{} µm RMS", fixed(arc.rms_mm * 1e3, 1)));
+}
+
+fn station_rows(ui: &mut Ui, solved: &StationSolution) {
+    let ratio = solved.side_cost_ratio.map_or_else(String::new, |ratio| format!("  ({} : 1)", fixed(ratio, 0)));
+    let side = match solved.side {
+        calibrate::Side::Plus => "+",
+        calibrate::Side::Minus => "−",
+    };
+    value_row(ui, words::SIDE_OF_BALL, format!("{side}{ratio}")).on_hover_text(words::SIDE_HINT);
+    if let Some(sweep) = &solved.sweep {
+        let peak = format!("{} ± {} mm", signed(sweep.peak_mm, 3), fixed(sweep.peak_std_mm, 3));
+        value_row(ui, words::LARGEST_ARC_AT, peak);
+    }
+    if let Some(left_out_mm) = solved.leave_one_out_mm {
+        value_row(ui, words::LEFT_OUT, format!("{} mm", fixed(left_out_mm, 3))).on_hover_text(words::LEFT_OUT_HINT);
+    }
+}
+
+fn method_header(ui: &mut Ui, context: &mut PanelContext<'_>, document: &Document) {
+    ui.horizontal(|ui| {
+        ui.label(theme::strong(words::transform_name(document.session.mount)));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let current = context.selection.method;
+            let combo = ComboBox::from_id_salt("method shown")
+                .selected_text(method_text(current))
+                .show_ui(ui, |ui| {
+                    for method in Method::ALL {
+                        ui.selectable_value(&mut context.selection.method, method, method_text(method));
+                    }
+                })
+                .response;
+            combo.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, words::METHOD));
+        });
+    });
+}
+
+fn method_text(method: Method) -> RichText {
+    RichText::new(format!("{} {}", theme::method_symbol(method), method_short_name(method)))
+        .color(theme::method_text_color(method))
+}
+
+fn solution_section(ui: &mut Ui, document: &Document, solution: &Solution) {
+    matrix(ui, solution);
+    ui.add_space(12.0);
+    let convention = document.session.robot.pose_convention;
+    ui.label(theme::strong(convention.label)).on_hover_text(words::convention_hint(convention.formula));
+    ui.add_space(4.0);
+    let translation = solution.flange_from_sensor.translation_mm();
+    let angles = convention.angles_deg_from_rotation(&solution.flange_from_sensor.rotation());
+    let translation: [f64; 3] = translation.into();
+    let translation_std: Option<[f64; 3]> =
+        solution.uncertainty.as_ref().map(|uncertainty| uncertainty.translation_std_mm.into());
+    let angle_std = model::angle_std_deg(solution, convention);
+    let decimals = |std: Option<[f64; 3]>| {
+        std.map_or(3, |std| std.into_iter().map(|std| model::decimals_for(std, 4)).max().unwrap_or(3))
+    };
+    let (length_decimals, angle_decimals) = (decimals(translation_std).max(3), decimals(angle_std).max(3));
+    triple_row(ui, words::TRANSLATION, translation.map(|mm| fixed(mm, length_decimals)), "mm");
+    triple_row(ui, &words::angle_names(convention.angle_names), angles.map(|deg| fixed(deg, angle_decimals)), "°");
+    if let (Some(translation_std), Some(angle_std)) = (translation_std, angle_std) {
+        triple_row(ui, words::TRANSLATION_STD, translation_std.map(|mm| fixed(mm, length_decimals)), "mm");
+        let label = words::angle_std_names(convention.angle_names);
+        triple_row(ui, &label, angle_std.map(|deg| fixed(deg, angle_decimals)), "°");
+    } else {
+        ui.add(egui::Label::new(theme::dim(ui, words::NO_UNCERTAINTY)).wrap());
+    }
+    ui.add_space(8.0);
+    ui.horizontal(|ui| copy_menu(ui, document, solution));
+    ui.add_space(16.0);
+    findings::show(ui, solution);
+}
+
+fn matrix(ui: &mut Ui, solution: &Solution) {
+    let width = (ui.available_width() - 4.0) / 4.0;
+    let exact = solution.flange_from_sensor.matrix();
+    Grid::new("matrix").spacing([0.0, 0.0]).min_row_height(theme::ROW_HEIGHT).show(ui, |ui| {
+        for (row, cells) in model::matrix_cells(solution).into_iter().enumerate() {
+            for (column, cell) in cells.into_iter().enumerate() {
+                ui.allocate_ui_with_layout(
+                    egui::vec2(width, theme::ROW_HEIGHT),
+                    Layout::right_to_left(Align::Center),
+                    |ui| {
+                        ui.set_min_width(width);
+                        ui.label(number_text(cell)).on_hover_text(exact[(row, column)].to_string());
+                    },
+                );
+            }
+            ui.end_row();
+        }
+    });
+}
+
+/// Three figures with their unit, the unit in a dimmer tone.
+fn triple_row(ui: &mut Ui, label: &str, values: [String; 3], unit: &str) {
+    ui.horizontal(|ui| {
+        ui.set_min_height(theme::ROW_HEIGHT);
+        ui.label(theme::dim(ui, label));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            ui.allocate_ui_with_layout(egui::vec2(20.0, theme::ROW_HEIGHT), Layout::left_to_right(Align::Center), |ui| {
+                ui.set_min_width(20.0);
+                ui.label(theme::dim(ui, unit));
+            });
+            ui.label(number_text(values.join("  ")));
+        });
+    });
+}
+
+fn copy_menu(ui: &mut Ui, document: &Document, solution: &Solution) {
+    ui.menu_button(format!("{} ▾", words::COPY), |ui| {
+        let convention = document.session.robot.pose_convention;
+        if ui.button(words::COPY_MATRIX).clicked() {
+            ui.ctx().copy_text(model::matrix_text(solution));
+            ui.close();
+        }
+        if ui.button(words::COPY_POSE).clicked() {
+            ui.ctx().copy_text(model::pose_text(solution, convention));
+            ui.close();
+        }
+        if ui.button(words::COPY_QUATERNION).clicked() {
+            ui.ctx().copy_text(model::quaternion_text(solution));
+            ui.close();
+        }
+    });
+}

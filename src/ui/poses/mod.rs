@@ -1,0 +1,4 @@
+//! Step Poses: the stations in the robot's own convention, and which of them take part.
+
+pub mod model;
+pub mod panel;

@@ -1,0 +1,255 @@
+//! The pose table.
+
+use std::collections::BTreeSet;
+
+use egui::{Align, Key, Layout, Modifiers, RichText, Sense, Ui};
+use egui_extras::{Column, TableRow};
+
+use crate::app::{Command, Document, Results};
+use crate::text::poses as words;
+use crate::ui::widgets::tables::{faded_number_cell, head, number_cell, number_column, number_head, table};
+use crate::ui::widgets::{card_with_height, fixed, named_checkbox, symbol_button};
+use crate::ui::{PanelContext, theme};
+
+use super::model::{self, Row};
+
+/// Decimals of a position in mm: what controllers report.
+const POSITION_DECIMALS: usize = 3;
+/// Decimals of an angle in degrees: what controllers report.
+const ANGLE_DECIMALS: usize = 3;
+
+/// What is unfolded.
+#[derive(Debug, Default)]
+pub struct PosesState {
+    unfolded: BTreeSet<usize>,
+}
+
+/// Draws the step.
+pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut PosesState) {
+    let Some(document) = context.workbench.document() else { return };
+    let num_stations = document.session.stations.len();
+    let num_enabled = document.session.stations.iter().filter(|station| station.enabled).count();
+    let rows = model::rows(&document.session, &state.unfolded);
+    let moved_to = move_by_keys(ui, context, &rows);
+    let is_all_unfolded = state.unfolded.len() >= num_stations;
+    let mut toggle_all = false;
+    let height = ui.available_height();
+    card_with_height(
+        ui,
+        words::TITLE,
+        height,
+        |ui| {
+            let label = if is_all_unfolded { words::FOLD_ALL } else { words::UNFOLD_ALL };
+            toggle_all = ui.small_button(label).clicked();
+            ui.label(theme::dim(ui, words::usage(num_enabled, num_stations)));
+        },
+        |ui| {
+            if rows.is_empty() {
+                ui.centered_and_justified(|ui| ui.label(theme::dim(ui, words::NO_STATIONS)));
+            } else {
+                show_table(ui, context, document, state, &rows, moved_to);
+            }
+        },
+    );
+    if toggle_all {
+        state.unfolded = if is_all_unfolded { BTreeSet::new() } else { (0..num_stations).collect() };
+    }
+}
+
+/// Moves the selection with the arrow keys; answers the row to be brought into view.
+fn move_by_keys(ui: &Ui, context: &mut PanelContext<'_>, rows: &[Row]) -> Option<usize> {
+    if ui.ctx().egui_wants_keyboard_input() {
+        return None;
+    }
+    let pressed = |key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));
+    let (up, down) = (pressed(Key::ArrowUp), pressed(Key::ArrowDown));
+    if up == down {
+        return None;
+    }
+    let current = rows.iter().position(|row| is_selected(context, *row)).unwrap_or(0);
+    let row_idx = if up { current.saturating_sub(1) } else { (current + 1).min(rows.len().checked_sub(1)?) };
+    select(context, *rows.get(row_idx)?);
+    Some(row_idx)
+}
+
+/// A station's row stands for its first capture; further captures are selected in their own rows, where unfolded.
+fn is_selected(context: &PanelContext<'_>, row: Row) -> bool {
+    let selection = &context.selection;
+    match row {
+        Row::Station(station_idx) => selection.station_idx == station_idx && selection.capture_idx == 0,
+        Row::Capture { station_idx, capture_idx } => {
+            selection.station_idx == station_idx && selection.capture_idx == capture_idx && capture_idx > 0
+        }
+    }
+}
+
+fn select(context: &mut PanelContext<'_>, row: Row) {
+    (context.selection.station_idx, context.selection.capture_idx) = match row {
+        Row::Station(station_idx) => (station_idx, 0),
+        Row::Capture { station_idx, capture_idx } => (station_idx, capture_idx),
+    };
+}
+
+fn show_table(
+    ui: &mut Ui,
+    context: &mut PanelContext<'_>,
+    document: &Document,
+    state: &mut PosesState,
+    rows: &[Row],
+    moved_to: Option<usize>,
+) {
+    let angle_names = document.session.robot.pose_convention.angle_names;
+    let mut builder = table(ui, "poses")
+        .sense(Sense::click())
+        .column(Column::exact(36.0))
+        .column(Column::exact(24.0))
+        .column(Column::initial(96.0).at_least(56.0).clip(true))
+        .column(Column::exact(48.0))
+        .columns(number_column(64.0), 6)
+        .column(Column::exact(72.0))
+        .column(Column::exact(64.0));
+    if let Some(row_idx) = moved_to {
+        builder = builder.scroll_to_row(row_idx, None);
+    }
+    builder
+        .header(theme::ROW_HEIGHT, |mut header| {
+            head(&mut header, words::USED);
+            head(&mut header, "");
+            head(&mut header, words::STATION);
+            head(&mut header, words::SIDE);
+            for name in ["x", "y", "z"] {
+                number_head(&mut header, &format!("{name} / mm"));
+            }
+            for name in angle_names {
+                number_head(&mut header, &format!("{name} / °"));
+            }
+            number_head(&mut header, words::CAPTURES);
+            head(&mut header, words::CHECK);
+        })
+        .body(|body| {
+            body.rows(theme::ROW_HEIGHT, rows.len(), |mut table_row| {
+                let Some(&row) = rows.get(table_row.index()) else { return };
+                table_row.set_selected(is_selected(context, row));
+                match row {
+                    Row::Station(station_idx) => show_station(&mut table_row, context, document, state, station_idx),
+                    Row::Capture { station_idx, capture_idx } => {
+                        show_capture(&mut table_row, context, document, station_idx, capture_idx);
+                    }
+                }
+                if table_row.response().clicked() {
+                    select(context, row);
+                }
+            });
+        });
+}
+
+fn show_station(
+    row: &mut TableRow<'_, '_>,
+    context: &mut PanelContext<'_>,
+    document: &Document,
+    state: &mut PosesState,
+    station_idx: usize,
+) {
+    let Some(station) = document.session.stations.get(station_idx) else { return };
+    row.col(|ui| {
+        ui.add_space(8.0);
+        let mut enabled = station.enabled;
+        if named_checkbox(ui, &mut enabled, &words::use_station(&station.label)).changed() {
+            context.commands.push(Command::SetStationEnabled { station_idx, enabled });
+        }
+    });
+    row.col(|ui| {
+        if station.captures.len() > 1 {
+            let is_unfolded = state.unfolded.contains(&station_idx);
+            let (symbol, name) = if is_unfolded {
+                ("▾", words::fold_station(&station.label))
+            } else {
+                ("▸", words::unfold_station(&station.label))
+            };
+            if symbol_button(ui, symbol, &name).clicked() && !state.unfolded.remove(&station_idx) {
+                state.unfolded.insert(station_idx);
+            }
+        }
+    });
+    row.col(|ui| {
+        ui.add_space(4.0);
+        let color = if station.enabled { theme::palette(ui).text } else { theme::palette(ui).text_dim };
+        ui.label(RichText::new(&station.label).color(color));
+    });
+    row.col(|ui| {
+        ui.add_space(4.0);
+        ui.label(theme::dim(ui, words::side(station.side)));
+    });
+    pose_cells(row, document, station_idx, 0, station.enabled);
+    number_cell(row, station.captures.len().to_string());
+    row.col(|ui| {
+        ui.add_space(12.0);
+        if station.enabled {
+            check_mark(ui, context.workbench.results(), document, context.selection.method, station_idx);
+        } else {
+            ui.label(theme::dim(ui, "–")).on_hover_text(words::LEFT_OUT);
+        }
+    });
+}
+
+fn show_capture(
+    row: &mut TableRow<'_, '_>,
+    context: &PanelContext<'_>,
+    document: &Document,
+    station_idx: usize,
+    capture_idx: usize,
+) {
+    let Some(station) = document.session.stations.get(station_idx) else { return };
+    row.col(|_| {});
+    row.col(|_| {});
+    row.col(|ui| {
+        ui.add_space(16.0);
+        ui.label(theme::dim(ui, words::capture_name(&station.label, capture_idx + 1)));
+    });
+    row.col(|_| {});
+    pose_cells(row, document, station_idx, capture_idx, false);
+    row.col(|_| {});
+    row.col(|ui| {
+        let refusal = context
+            .workbench
+            .results()
+            .and_then(|results| model::refusal(results, station_idx, capture_idx));
+        if let Some(reason) = refusal {
+            ui.add_space(12.0);
+            ui.label(RichText::new("!").color(theme::palette(ui).warn)).on_hover_text(reason);
+        }
+    });
+}
+
+fn pose_cells(row: &mut TableRow<'_, '_>, document: &Document, station_idx: usize, capture_idx: usize, is_bold: bool) {
+    let Some(figures) = model::pose_figures(&document.session, station_idx, capture_idx) else { return };
+    for (idx, figure) in figures.into_iter().enumerate() {
+        let decimals = if idx < 3 { POSITION_DECIMALS } else { ANGLE_DECIMALS };
+        let text = fixed(figure, decimals);
+        if is_bold {
+            number_cell(row, text);
+        } else {
+            faded_number_cell(row, text);
+        }
+    }
+}
+
+fn check_mark(
+    ui: &mut Ui,
+    results: Option<&Results>,
+    document: &Document,
+    method: crate::calibrate::Method,
+    station_idx: usize,
+) {
+    let Some(results) = results else { return };
+    let palette = theme::palette(ui);
+    let findings = model::findings(&document.session, results, method, station_idx);
+    if findings.is_empty() {
+        ui.label(RichText::new("✔").color(palette.good)).on_hover_text(words::FINE);
+    } else {
+        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+            ui.label(RichText::new(format!("{} !", findings.len())).color(palette.warn))
+                .on_hover_text(findings.join("\n"));
+        });
+    }
+}

@@ -1,0 +1,145 @@
+//! The rail at the left: the steps in the order of work, each with its state. It leads; nothing is locked.
+
+use egui::{Align2, CornerRadius, Rect, Sense, TextStyle, Ui, WidgetInfo, Role, vec2};
+
+use crate::app::Workbench;
+use crate::calibrate::verdict;
+use crate::text::methods::verdict_mark;
+use crate::text::shell as words;
+
+use super::actions::Action;
+use super::poses::model::num_stations_with_findings;
+use super::{Selection, theme};
+
+/// Height of a step, points: large enough for a gloved hand.
+const STEP_HEIGHT: f32 = 40.0;
+
+/// A step of the rail.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Step {
+    /// Opening a session and its overview.
+    #[default]
+    Session,
+    /// Profiles with their circles and sweeps.
+    Arcs,
+    /// The pose table.
+    Poses,
+    /// Methods side by side.
+    Compare,
+}
+
+impl Step {
+    /// All steps in the order of the rail.
+    pub const ALL: [Self; 4] = [Self::Session, Self::Arcs, Self::Poses, Self::Compare];
+
+    /// The step's name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Session => words::STEP_SESSION,
+            Self::Arcs => words::STEP_ARCS,
+            Self::Poses => words::STEP_POSES,
+            Self::Compare => words::STEP_COMPARE,
+        }
+    }
+
+    /// The step with this name, in any case.
+    #[must_use]
+    pub fn by_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|step| step.name().eq_ignore_ascii_case(name))
+    }
+
+    const fn hint(self) -> &'static str {
+        match self {
+            Self::Session => words::STEP_SESSION_HINT,
+            Self::Arcs => words::STEP_ARCS_HINT,
+            Self::Poses => words::STEP_POSES_HINT,
+            Self::Compare => words::STEP_COMPARE_HINT,
+        }
+    }
+}
+
+/// What stands at a step's right: the shape says it, the colour only repeats it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Mark {
+    None,
+    Fine(String),
+    Look(String),
+    Bad(String),
+}
+
+/// Draws the rail.
+pub fn show(ui: &mut Ui, workbench: &Workbench, selection: &Selection, current: Step, actions: &mut Vec<Action>) {
+    ui.spacing_mut().item_spacing.y = 0.0;
+    ui.add_space(theme::GAP);
+    for (idx, step) in Step::ALL.into_iter().enumerate() {
+        let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), STEP_HEIGHT), Sense::click());
+        let is_current = step == current;
+        response.widget_info(|| WidgetInfo::selected(Role::Tab, true, is_current, step.name()));
+        let inner = Rect::from_min_max(rect.min + vec2(8.0, 2.0), rect.max - vec2(8.0, 2.0));
+        paint_step(ui, inner, idx + 1, step, is_current, response.hovered() || response.has_focus());
+        paint_mark(ui, inner, &mark(workbench, selection, step));
+        if response.on_hover_text(step.hint()).clicked() {
+            actions.push(Action::GoTo(step));
+        }
+    }
+}
+
+fn paint_step(ui: &Ui, rect: Rect, number: usize, step: Step, is_current: bool, is_hovered: bool) {
+    let palette = theme::palette(ui);
+    let painter = ui.painter();
+    if is_current || is_hovered {
+        let fill = if is_current { palette.selected } else { palette.hovered };
+        painter.rect_filled(rect, CornerRadius::same(theme::RADIUS), fill);
+    }
+    let font = TextStyle::Body.resolve(ui.style());
+    let strong = theme::strong_font();
+    let left = rect.left_center();
+    let number_color = if is_current { palette.accent } else { palette.text_dim };
+    painter.text(left + vec2(12.0, 0.0), Align2::LEFT_CENTER, number, font.clone(), number_color);
+    let (name_font, name_color) = if is_current { (strong, palette.accent) } else { (font, palette.text) };
+    painter.text(left + vec2(32.0, 0.0), Align2::LEFT_CENTER, step.name(), name_font, name_color);
+}
+
+fn paint_mark(ui: &Ui, rect: Rect, mark: &Mark) {
+    let palette = theme::palette(ui);
+    let (text, color) = match mark {
+        Mark::None => return,
+        Mark::Fine(text) => (text, palette.good),
+        Mark::Look(text) => (text, palette.warn),
+        Mark::Bad(text) => (text, palette.bad),
+    };
+    let font = TextStyle::Body.resolve(ui.style());
+    ui.painter().text(rect.right_center() - vec2(12.0, 0.0), Align2::RIGHT_CENTER, text, font, color);
+}
+
+fn mark(workbench: &Workbench, selection: &Selection, step: Step) -> Mark {
+    let (Some(document), Some(results)) = (workbench.document(), workbench.results()) else {
+        return match (step, workbench.document()) {
+            (Step::Session, Some(_)) => Mark::Fine("✔".to_owned()),
+            _ => Mark::None,
+        };
+    };
+    let counted = |number: usize| match number {
+        0 => Mark::Fine("✔".to_owned()),
+        number => Mark::Look(format!("{number} !")),
+    };
+    match step {
+        Step::Session => Mark::Fine("✔".to_owned()),
+        Step::Arcs => counted(super::poses::model::num_refused(&document.session, results)),
+        Step::Poses => counted(num_stations_with_findings(&document.session, results, selection.method)),
+        Step::Compare => match results.method(selection.method).map(|result| &result.outcome) {
+            Some(Ok(solution)) => {
+                let (verdict, _) = verdict::judge(solution);
+                let shape = verdict_mark(verdict).to_owned();
+                match verdict {
+                    crate::calibrate::Verdict::Good => Mark::Fine(shape),
+                    crate::calibrate::Verdict::Usable => Mark::Look(shape),
+                    crate::calibrate::Verdict::NotUsable => Mark::Bad(shape),
+                }
+            }
+            Some(Err(_)) => Mark::Bad("✖".to_owned()),
+            None => Mark::None,
+        },
+    }
+}

@@ -1,0 +1,111 @@
+//! A picture of one step, drawn without a display.
+
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::sync_channel;
+
+use egui::{Context, Pos2, RawInput, Rect, TexturesDelta, vec2};
+use image::RgbaImage;
+use thiserror::Error;
+
+use crate::app::{Command, NoticeKind};
+
+use super::persisted::Persisted;
+use super::rail::Step;
+use super::shell::Shell;
+use super::software_renderer::SoftwareRenderer;
+
+/// Frames drawn before the picture is taken: tables and plots settle their sizes over the first few.
+const NUM_SETTLING_FRAMES: usize = 6;
+
+/// Why there is no picture.
+#[derive(Debug, Error)]
+pub enum ScreenshotError {
+    /// The session could not be opened.
+    #[error("{0}")]
+    Session(String),
+    /// The picture could not be written.
+    #[error("cannot write {}: {source}", path.display())]
+    Write {
+        /// Where to.
+        path: PathBuf,
+        /// What went wrong.
+        source: image::ImageError,
+    },
+}
+
+/// Draws `step` with a session, or the start page without one, at `size` pixels, and writes it to `out` as PNG.
+///
+/// # Errors
+/// [`ScreenshotError`] if the session cannot be read or the picture not be written.
+pub fn screenshot(session: Option<&Path>, step: Step, size: [u32; 2], out: &Path) -> Result<(), ScreenshotError> {
+    let image = render(session, step, size)?;
+    image.save(out).map_err(|source| ScreenshotError::Write {
+        path: out.to_owned(),
+        source,
+    })
+}
+
+/// The same picture, not written.
+///
+/// # Errors
+/// [`ScreenshotError::Session`] if the session cannot be read.
+pub fn render(session: Option<&Path>, step: Step, size: [u32; 2]) -> Result<RgbaImage, ScreenshotError> {
+    let ctx = Context::default();
+    let (sender, woken) = sync_channel(1);
+    let mut shell = Shell::new(&ctx, Persisted::default());
+    ctx.set_request_repaint_callback(move |_| drop(sender.try_send(())));
+    if let Some(path) = session {
+        shell.workbench_mut().apply(Command::Open(path.to_owned()));
+    }
+    let mut renderer = SoftwareRenderer::default();
+    let mut frames = Frames { ctx, size, renderer: &mut renderer };
+    // Also without news it looks again after a while: a wake-up may have come before the callback was set.
+    while shell.is_busy() {
+        frames.draw(&mut shell);
+        woken.recv_timeout(std::time::Duration::from_millis(20)).ok();
+    }
+    let failed = shell.workbench().notices().iter().find(|notice| notice.kind == NoticeKind::Error);
+    if let Some(notice) = failed {
+        return Err(ScreenshotError::Session(notice.message.clone()));
+    }
+    shell.go_to(step);
+    for _ in 1..NUM_SETTLING_FRAMES {
+        frames.draw(&mut shell);
+    }
+    Ok(frames.picture(&mut shell))
+}
+
+struct Frames<'a> {
+    ctx: Context,
+    size: [u32; 2],
+    renderer: &'a mut SoftwareRenderer,
+}
+
+impl Frames<'_> {
+    fn draw(&mut self, shell: &mut Shell) -> egui::FullOutput {
+        shell.logic(&self.ctx);
+        let [width, height] = self.size.map(to_points);
+        let input = RawInput {
+            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, vec2(width, height))),
+            focused: true,
+            ..RawInput::default()
+        };
+        let ctx = self.ctx.clone();
+        let mut output = ctx.run_ui(input, |ui| shell.ui(ui));
+        let textures: TexturesDelta = std::mem::take(&mut output.textures_delta);
+        self.renderer.update_textures(&textures);
+        self.renderer.free_textures(&textures);
+        output
+    }
+
+    fn picture(&mut self, shell: &mut Shell) -> RgbaImage {
+        let output = self.draw(shell);
+        let primitives = self.ctx.tessellate(output.shapes, output.pixels_per_point);
+        self.renderer.paint(&primitives, output.pixels_per_point, self.size)
+    }
+}
+
+#[expect(clippy::cast_precision_loss, reason = "sides of pictures are far below 2^24")]
+const fn to_points(pixels: u32) -> f32 {
+    pixels as f32
+}

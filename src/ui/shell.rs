@@ -1,0 +1,481 @@
+//! The window's frame around the panels, and what it does with actions and commands.
+
+use std::sync::Arc;
+
+use egui::{CentralPanel, Context, Frame, Margin, Panel, Stroke, Ui, ViewportCommand};
+
+use crate::app::jobs::Wake;
+use crate::app::{Command, Workbench};
+use crate::calibrate::Method;
+use crate::text::shell as words;
+
+use super::actions::{self, Action};
+use super::arcs::ArcsState;
+use super::compare::CompareState;
+use super::dialogs::{self, SavePath, SavePathAnswer, UnsavedAnswer};
+use super::file_dialog::{Answer, FileDialog, Purpose};
+use super::persisted::Persisted;
+use super::poses::panel::PosesState;
+use super::rail::{self, Step};
+use super::start::panel::StartState;
+use super::{PanelContext, Selection, arcs, compare, inspector, poses, start, status, theme, top_bar, widgets};
+
+/// Height of the bar at the top, points.
+const TOP_HEIGHT: f32 = 44.0;
+/// Height of the line at the bottom, points.
+const BOTTOM_HEIGHT: f32 = 40.0;
+/// Width of the rail, points.
+const RAIL_WIDTH: f32 = 148.0;
+/// Width of the inspector, points.
+const INSPECTOR_WIDTH: f32 = 308.0;
+/// Seconds after which a notice of something done goes away by itself.
+const DONE_NOTICE_SECONDS: f64 = 6.0;
+
+/// Something that waits for the answer about unsaved changes.
+#[derive(Clone, Debug, PartialEq)]
+enum Pending {
+    Command(Command),
+    Quit,
+}
+
+/// The window without its operating-system part: a test, the screenshot and eframe drive the same thing.
+pub struct Shell {
+    workbench: Workbench,
+    wake: Wake,
+    step: Step,
+    selection: Selection,
+    start: StartState,
+    poses: PosesState,
+    arcs: ArcsState,
+    compare: CompareState,
+    persisted: Persisted,
+    file_dialog: FileDialog,
+    save_path: Option<SavePath>,
+    is_help_open: bool,
+    unsaved_question: Option<Pending>,
+    after_saving: Option<Pending>,
+    is_quitting: bool,
+    seen_revision: u64,
+    seen_results: u64,
+    done_notice: Option<(u64, f64)>,
+    window_title: String,
+    applied_scale: f32,
+}
+
+impl Shell {
+    /// An empty window; sets the theme of `ctx`.
+    #[must_use]
+    pub fn new(ctx: &Context, persisted: Persisted) -> Self {
+        theme::install(ctx);
+        let repaint = ctx.clone();
+        let wake: Wake = Arc::new(move || repaint.request_repaint());
+        let mut start = StartState::default();
+        start.read_samples(&wake);
+        ctx.set_theme(persisted.theme.preference());
+        ctx.set_zoom_factor(persisted.scale);
+        let applied_scale = persisted.scale;
+        Self {
+            workbench: Workbench::new(Arc::clone(&wake)),
+            wake,
+            step: Step::default(),
+            selection: Selection::default(),
+            start,
+            poses: PosesState::default(),
+            arcs: ArcsState::default(),
+            compare: CompareState::default(),
+            persisted,
+            file_dialog: FileDialog::default(),
+            save_path: None,
+            is_help_open: false,
+            unsaved_question: None,
+            after_saving: None,
+            is_quitting: false,
+            seen_revision: 0,
+            seen_results: 0,
+            done_notice: None,
+            window_title: String::new(),
+            applied_scale,
+        }
+    }
+
+    /// Document, results, jobs and notices.
+    #[must_use]
+    pub const fn workbench(&self) -> &Workbench {
+        &self.workbench
+    }
+
+    /// The same, for commands from outside the window: the command line's file, a test.
+    pub const fn workbench_mut(&mut self) -> &mut Workbench {
+        &mut self.workbench
+    }
+
+    /// What is remembered between runs.
+    #[must_use]
+    pub const fn persisted(&self) -> &Persisted {
+        &self.persisted
+    }
+
+    /// The step in sight.
+    #[must_use]
+    pub const fn step(&self) -> Step {
+        self.step
+    }
+
+    /// Goes to a step.
+    pub const fn go_to(&mut self, step: Step) {
+        self.step = step;
+    }
+
+    /// Whether something is being read or solved in the background.
+    #[must_use]
+    pub const fn is_busy(&self) -> bool {
+        self.workbench.is_busy() || self.start.is_reading()
+    }
+
+    /// Takes in finished jobs; also while the window is hidden.
+    pub fn logic(&mut self, ctx: &Context) {
+        if self.workbench.poll() {
+            ctx.request_repaint();
+        }
+        self.start.poll();
+        self.notice_new_document(ctx);
+        self.notice_new_results();
+        self.take_dialog_answer();
+        self.go_on_after_saving(ctx);
+        self.guard_closing(ctx);
+        self.dismiss_done_notice(ctx);
+    }
+
+    /// Draws one frame and carries out what the user asked for in it.
+    pub fn ui(&mut self, ui: &mut Ui) {
+        let ctx = ui.ctx().clone();
+        let mut actions = actions::pressed(&ctx, &self.workbench);
+        let mut commands = Vec::new();
+        self.open_dropped_files(&ctx, &mut commands);
+        self.bars(ui, &mut actions, &mut commands);
+        self.center(ui, &mut actions, &mut commands);
+        self.questions(&ctx);
+        for action in actions {
+            self.perform(&ctx, action, &mut commands);
+        }
+        for command in commands {
+            self.apply(command);
+        }
+        self.apply_looks(&ctx);
+    }
+
+    fn bars(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, commands: &mut Vec<Command>) {
+        let palette = theme::palette(ui);
+        let bar = Frame::new().fill(palette.surface);
+        Panel::top("top bar").exact_size(TOP_HEIGHT).frame(bar).show(ui, |ui| {
+            top_bar::show(ui, &self.workbench, &mut self.persisted, actions);
+        });
+        Panel::bottom("status").exact_size(BOTTOM_HEIGHT).frame(bar).show(ui, |ui| {
+            status::show(ui, &self.workbench, self.step, actions, commands);
+        });
+        if status::notices_shown(&self.workbench, self.step).next().is_some() {
+            let strip = bar.inner_margin(Margin::symmetric(0, 4));
+            Panel::bottom("notices").resizable(false).frame(strip).show(ui, |ui| {
+                status::notices(ui, &self.workbench, self.step, commands);
+            });
+        }
+        Panel::left("rail").resizable(false).exact_size(RAIL_WIDTH).frame(bar).show(ui, |ui| {
+            rail::show(ui, &self.workbench, &self.selection, self.step, actions);
+        });
+        if self.persisted.inspector_open && self.workbench.document().is_some() {
+            let frame = bar.inner_margin(Margin::symmetric(16, 0));
+            Panel::right("inspector").resizable(false).exact_size(INSPECTOR_WIDTH).frame(frame).show(ui, |ui| {
+                let mut context = PanelContext {
+                    workbench: &self.workbench,
+                    selection: &mut self.selection,
+                    commands,
+                };
+                inspector::panel::show(ui, &mut context);
+            });
+        }
+    }
+
+    fn center(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, commands: &mut Vec<Command>) {
+        let canvas = Frame::new().fill(theme::palette(ui).canvas).inner_margin(12);
+        CentralPanel::default().frame(canvas).show(ui, |ui| {
+            if self.workbench.document().is_none() && self.step != Step::Session {
+                empty_state(ui, actions);
+                return;
+            }
+            let mut context = PanelContext {
+                workbench: &self.workbench,
+                selection: &mut self.selection,
+                commands,
+            };
+            match self.step {
+                Step::Session => {
+                    start::panel::show(ui, &mut context, &mut self.start, &self.persisted.recent_files, actions);
+                }
+                Step::Poses => poses::panel::show(ui, &mut context, &mut self.poses),
+                Step::Arcs => arcs::show(ui, &mut context, &mut self.arcs),
+                Step::Compare => compare::show(ui, &mut context, &mut self.compare),
+            }
+        });
+    }
+
+    fn open_dropped_files(&self, ctx: &Context, commands: &mut Vec<Command>) {
+        let (dropped, is_hovering) = ctx.input(|input| {
+            let paths: Vec<_> = input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect();
+            (paths, !input.raw.hovered_files.is_empty())
+        });
+        if is_hovering {
+            drop_overlay(ctx);
+        }
+        // One document at a time: of several files, the first.
+        commands.extend(dropped.into_iter().take(1).map(Command::Open));
+    }
+
+    fn questions(&mut self, ctx: &Context) {
+        dialogs::help(ctx, &self.workbench, &mut self.is_help_open);
+        if let Some(answer) = self.save_path.as_mut().and_then(|save_path| save_path.ask(ctx)) {
+            self.save_path = None;
+            match answer {
+                SavePathAnswer::Save(path) => self.workbench.apply(Command::SaveAs(path)),
+                SavePathAnswer::Cancel => self.after_saving = None,
+            }
+        }
+        let Some(document) = self.workbench.document().filter(|_| self.unsaved_question.is_some()) else {
+            self.unsaved_question = None;
+            return;
+        };
+        let Some(answer) = dialogs::ask_unsaved(ctx, &document.title()) else { return };
+        let Some(pending) = self.unsaved_question.take() else { return };
+        match answer {
+            UnsavedAnswer::Save => {
+                self.after_saving = Some(pending);
+                self.save();
+            }
+            UnsavedAnswer::Discard => self.carry_out(ctx, pending),
+            UnsavedAnswer::Cancel => {}
+        }
+    }
+
+    fn perform(&mut self, ctx: &Context, action: Action, commands: &mut Vec<Command>) {
+        match action {
+            Action::Open => self.file_dialog.start(Purpose::Open, String::new(), Arc::clone(&self.wake)),
+            Action::OpenSample(sample_idx) => commands.push(Command::OpenSample(sample_idx)),
+            Action::Save => self.save(),
+            Action::SaveAs => self.save_as(),
+            Action::Close => commands.push(Command::CloseDocument),
+            Action::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
+            Action::Undo => commands.push(Command::Undo),
+            Action::Redo => commands.push(Command::Redo),
+            Action::Help => self.is_help_open = !self.is_help_open,
+            Action::Inspector => self.persisted.inspector_open = !self.persisted.inspector_open,
+            Action::GoTo(step) => self.step = step,
+        }
+    }
+
+    /// Applies a command; one that puts another document on the bench asks first if changes would be lost.
+    fn apply(&mut self, command: Command) {
+        let replaces = matches!(command, Command::Open(_) | Command::OpenSample(_) | Command::CloseDocument);
+        if replaces && self.workbench.document().is_some_and(crate::app::Document::is_unsaved) {
+            self.unsaved_question = Some(Pending::Command(command));
+            return;
+        }
+        self.carry_out_command(command);
+    }
+
+    fn carry_out(&mut self, ctx: &Context, pending: Pending) {
+        match pending {
+            Pending::Command(command) => self.carry_out_command(command),
+            Pending::Quit => {
+                self.is_quitting = true;
+                ctx.send_viewport_cmd(ViewportCommand::Close);
+            }
+        }
+    }
+
+    fn carry_out_command(&mut self, command: Command) {
+        if matches!(command, Command::Open(_) | Command::OpenSample(_)) {
+            // What went wrong with the last file does not concern this one.
+            let stale: Vec<u64> = self.workbench.notices().iter().map(|notice| notice.id).collect();
+            for id in stale {
+                self.workbench.apply(Command::DismissNotice(id));
+            }
+            self.step = Step::Session;
+        }
+        self.workbench.apply(command);
+    }
+
+    fn save(&mut self) {
+        match self.workbench.document() {
+            Some(document) if document.path.is_none() => self.save_as(),
+            _ => self.workbench.apply(Command::Save),
+        }
+    }
+
+    fn save_as(&mut self) {
+        let name = self.suggested_name();
+        self.file_dialog.start(Purpose::Save, name, Arc::clone(&self.wake));
+    }
+
+    fn suggested_name(&self) -> String {
+        let Some(document) = self.workbench.document() else { return String::new() };
+        if document.path.is_some() {
+            return document.title();
+        }
+        let name: String = document
+            .session
+            .name
+            .chars()
+            .map(|letter| if letter.is_alphanumeric() || "-_.".contains(letter) { letter } else { '-' })
+            .collect();
+        format!("{name}.json")
+    }
+
+    fn take_dialog_answer(&mut self) {
+        match self.file_dialog.poll() {
+            Some(Answer::Chosen(Purpose::Open, path)) => self.apply(Command::Open(path)),
+            Some(Answer::Chosen(Purpose::Save, path)) => self.workbench.apply(Command::SaveAs(path)),
+            Some(Answer::Unavailable(Purpose::Open)) => {
+                self.step = Step::Session;
+                self.start.ask_for_path(words::NO_FILE_DIALOG);
+            }
+            Some(Answer::Unavailable(Purpose::Save)) => {
+                let folder = std::env::current_dir().unwrap_or_default();
+                let suggestion = folder.join(self.suggested_name());
+                self.save_path = Some(SavePath::new(suggestion.display().to_string()));
+            }
+            Some(Answer::Cancelled) => self.after_saving = None,
+            None => {}
+        }
+    }
+
+    /// Once the changes are in the file, does what waited for it; if saving failed, forgets it: the user sees why.
+    fn go_on_after_saving(&mut self, ctx: &Context) {
+        if self.after_saving.is_none() || self.file_dialog.is_open() || self.save_path.is_some() {
+            return;
+        }
+        let is_saved = !self.workbench.document().is_some_and(crate::app::Document::is_unsaved);
+        if is_saved {
+            if let Some(pending) = self.after_saving.take() {
+                self.carry_out(ctx, pending);
+            }
+        } else if !self.workbench.is_busy() {
+            self.after_saving = None;
+        }
+    }
+
+    fn guard_closing(&mut self, ctx: &Context) {
+        let is_unsaved = self.workbench.document().is_some_and(crate::app::Document::is_unsaved);
+        if ctx.input(|input| input.viewport().close_requested()) && is_unsaved && !self.is_quitting {
+            ctx.send_viewport_cmd(ViewportCommand::CancelClose);
+            self.unsaved_question = Some(Pending::Quit);
+        }
+    }
+
+    fn notice_new_document(&mut self, ctx: &Context) {
+        let Some(document) = self.workbench.document() else {
+            self.seen_revision = 0;
+            self.set_title(ctx, words::PROGRAM.to_owned());
+            return;
+        };
+        let history = &document.history;
+        let is_new = history.undo_label().is_none() && history.redo_label().is_none();
+        if document.revision != self.seen_revision {
+            self.seen_revision = document.revision;
+            if is_new {
+                self.selection = Selection {
+                    method: self.selection.method,
+                    ..Selection::default()
+                };
+                self.poses = PosesState::default();
+                self.arcs = ArcsState::default();
+                self.compare = CompareState::default();
+                self.seen_results = 0;
+            }
+        }
+        if let Some(path) = &document.path
+            && self.persisted.recent_files.first() != Some(path)
+        {
+            self.persisted.note_recent(path);
+        }
+        let dot = if document.is_unsaved() { " ●" } else { "" };
+        let title = format!("{}{dot} – {}", document.title(), words::PROGRAM);
+        self.set_title(ctx, title);
+    }
+
+    fn set_title(&mut self, ctx: &Context, title: String) {
+        if self.window_title != title {
+            self.window_title.clone_from(&title);
+            ctx.send_viewport_cmd(ViewportCommand::Title(title));
+        }
+    }
+
+    /// With a document's first results, shows the method to be trusted most among those that found something.
+    fn notice_new_results(&mut self) {
+        let Some(results) = self.workbench.results() else { return };
+        if self.seen_results == results.revision {
+            return;
+        }
+        let is_first = self.seen_results == 0;
+        self.seen_results = results.revision;
+        let has_solution = |method: &Method| results.method(*method).is_some_and(|result| result.outcome.is_ok());
+        if is_first || !has_solution(&self.selection.method) {
+            let by_trust = [Method::BallBundle, Method::BallMaxArc, Method::BallFixedPoint, Method::BallMaxArcStep];
+            if let Some(method) = by_trust.into_iter().find(has_solution) {
+                self.selection.method = method;
+            }
+        }
+    }
+
+    fn dismiss_done_notice(&mut self, ctx: &Context) {
+        let now = ctx.input(|input| input.time);
+        let newest = self.workbench.notices().iter().find(|notice| notice.kind == crate::app::NoticeKind::Done);
+        let Some(id) = newest.map(|notice| notice.id) else {
+            self.done_notice = None;
+            return;
+        };
+        let (known_id, since) = *self.done_notice.get_or_insert((id, now));
+        if known_id != id {
+            self.done_notice = Some((id, now));
+        } else if now - since > DONE_NOTICE_SECONDS {
+            self.workbench.apply(Command::DismissNotice(id));
+            self.done_notice = None;
+        }
+        ctx.request_repaint_after(std::time::Duration::from_secs_f64(DONE_NOTICE_SECONDS));
+    }
+
+    /// Theme and scale as chosen in the menu; a scale set with the keyboard is taken over.
+    fn apply_looks(&mut self, ctx: &Context) {
+        ctx.set_theme(self.persisted.theme.preference());
+        let menu_scale = self.persisted.scale;
+        if (self.applied_scale - menu_scale).abs() > f32::EPSILON {
+            ctx.set_zoom_factor(menu_scale);
+            self.applied_scale = menu_scale;
+        } else if (ctx.zoom_factor() - menu_scale).abs() > f32::EPSILON {
+            self.persisted.scale = ctx.zoom_factor();
+            self.applied_scale = self.persisted.scale;
+        }
+    }
+}
+
+fn empty_state(ui: &mut Ui, actions: &mut Vec<Action>) {
+    ui.vertical_centered(|ui| {
+        ui.add_space(ui.available_height() / 3.0);
+        ui.label(theme::heading(words::EMPTY_TITLE));
+        ui.add_space(8.0);
+        ui.label(theme::dim(ui, words::EMPTY_HINT));
+        ui.add_space(16.0);
+        if widgets::primary_button(ui, words::CHOOSE_SESSION).clicked() {
+            actions.push(Action::GoTo(Step::Session));
+        }
+    });
+}
+
+fn drop_overlay(ctx: &Context) {
+    let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop overlay"));
+    let painter = ctx.layer_painter(layer);
+    let rect = ctx.content_rect();
+    let accent = theme::palette_of(&ctx.global_style().visuals).accent;
+    painter.rect_filled(rect, 0.0, accent.gamma_multiply(0.15));
+    painter.rect_stroke(rect.shrink(8.0), 4.0, Stroke::new(2.0, accent), egui::StrokeKind::Inside);
+    let text = crate::text::start::DROP_HERE;
+    painter.text(rect.center(), egui::Align2::CENTER_CENTER, text, theme::strong_font(), accent);
+}

@@ -1,0 +1,6 @@
+//! Step Session: the start page with samples and files, and the overview of an open session.
+
+pub mod model;
+pub mod overview;
+pub mod paint;
+pub mod panel;

@@ -1,0 +1,262 @@
+//! The start page, and the overview's column for opening another session.
+
+use std::path::PathBuf;
+
+use egui::{
+    Align, Align2, CornerRadius, FontSelection, Key, Layout, Rect, ScrollArea, Sense, Stroke, TextEdit, TextStyle,
+    TextWrapMode, Ui, WidgetInfo, WidgetText, Role, pos2, vec2,
+};
+
+use crate::app::jobs::{JobOutcome, Slot, Wake};
+use crate::app::{Command, NoticeKind};
+use crate::session::samples;
+use crate::text::shell as shell_words;
+use crate::text::start as words;
+use crate::ui::actions::Action;
+use crate::ui::widgets::{card, primary_button, symbol_button};
+use crate::ui::{PanelContext, theme};
+
+use super::model::{SamplePreview, preview_samples};
+use super::{overview, paint};
+
+/// Width that a sample's card is at least given, points.
+const MIN_CARD_WIDTH: f32 = 216.0;
+/// Height of a card's picture, points.
+const PICTURE_HEIGHT: f32 = 96.0;
+/// Height of a card, points: picture, name, two lines of lesson, sizes.
+const CARD_HEIGHT: f32 = PICTURE_HEIGHT + 112.0;
+/// Width of the start page's contents at most, points.
+const MAX_PAGE_WIDTH: f32 = 1160.0;
+
+/// The path being typed, and what was read of the samples.
+#[derive(Default)]
+pub struct StartState {
+    path: String,
+    wants_focus: bool,
+    hint: Option<&'static str>,
+    reading: Slot<Vec<Option<SamplePreview>>>,
+    previews: Vec<Option<SamplePreview>>,
+}
+
+impl StartState {
+    /// Begins to read the samples.
+    pub fn read_samples(&mut self, wake: &Wake) {
+        self.reading.start("preview samples", wake, |_| preview_samples());
+    }
+
+    /// Takes in what was read.
+    pub fn poll(&mut self) {
+        if let Some(JobOutcome::Done(previews)) = self.reading.poll() {
+            self.previews = previews;
+        }
+    }
+
+    /// Whether samples are still being read.
+    #[must_use]
+    pub const fn is_reading(&self) -> bool {
+        self.reading.is_running()
+    }
+
+    /// Asks for a path in the field, and says why.
+    pub const fn ask_for_path(&mut self, hint: &'static str) {
+        self.hint = Some(hint);
+        self.wants_focus = true;
+    }
+}
+
+/// Draws the step: the start page, or the overview of the open session beside the ways to open another.
+pub fn show(
+    ui: &mut Ui,
+    context: &mut PanelContext<'_>,
+    state: &mut StartState,
+    recent_files: &[PathBuf],
+    actions: &mut Vec<Action>,
+) {
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        if let Some(document) = context.workbench.document() {
+            overview::show(ui, document);
+            ui.add_space(theme::GAP);
+            open_card(ui, words::OPEN_ANOTHER, context, state, recent_files, actions);
+            ui.add_space(theme::GAP);
+            samples_grid(ui, context, state);
+        } else {
+            let margin = ((ui.available_width() - MAX_PAGE_WIDTH) / 2.0).max(0.0);
+            egui::Frame::new().inner_margin(egui::Margin::symmetric(round_points(margin), 16)).show(ui, |ui| {
+                ui.label(theme::heading(words::TITLE));
+                ui.add_space(4.0);
+                ui.label(theme::dim(ui, words::LEAD));
+                ui.add_space(16.0);
+                open_card(ui, words::OPEN_FILE, context, state, recent_files, actions);
+                ui.add_space(20.0);
+                ui.label(theme::strong(words::SAMPLES));
+                ui.add_space(8.0);
+                samples_grid(ui, context, state);
+            });
+        }
+    });
+}
+
+fn open_card(
+    ui: &mut Ui,
+    title: &str,
+    context: &mut PanelContext<'_>,
+    state: &mut StartState,
+    recent_files: &[PathBuf],
+    actions: &mut Vec<Action>,
+) {
+    card(
+        ui,
+        title,
+        |_| {},
+        |ui| {
+            egui::Frame::new().inner_margin(12).show(ui, |ui| {
+                path_row(ui, context, state, actions);
+                if let Some(hint) = state.hint {
+                    ui.label(egui::RichText::new(hint).color(theme::palette(ui).warn));
+                }
+                errors(ui, context);
+                ui.label(theme::dim(ui, words::DROP_HINT).small());
+                recent(ui, context, recent_files);
+            });
+        },
+    );
+}
+
+fn path_row(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut StartState, actions: &mut Vec<Action>) {
+    ui.horizontal(|ui| {
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let is_first = context.workbench.document().is_none();
+            let open = if is_first { primary_button(ui, shell_words::OPEN) } else { ui.button(shell_words::OPEN) };
+            if open.clicked() {
+                actions.push(Action::Open);
+            }
+            let path = state.path.trim();
+            let go = ui.add_enabled(!path.is_empty(), egui::Button::new(words::OPEN_PATH));
+            let mut wants_open = go.clicked();
+            let field = TextEdit::singleline(&mut state.path)
+                .hint_text(words::PATH_HINT)
+                .margin(vec2(8.0, 5.0))
+                .desired_width(f32::INFINITY);
+            let field = ui.add(field);
+            let text = state.path.clone();
+            field.widget_info(|| {
+                let mut info = WidgetInfo::text_edit(true, "", &text, words::PATH_HINT);
+                info.label = Some(words::PATH.to_owned());
+                info
+            });
+            if std::mem::take(&mut state.wants_focus) {
+                field.request_focus();
+            }
+            wants_open |= field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+            if wants_open && !state.path.trim().is_empty() {
+                context.commands.push(Command::Open(PathBuf::from(state.path.trim())));
+                state.hint = None;
+            }
+        });
+    });
+}
+
+/// What went wrong, right below the field where it was typed.
+fn errors(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    for notice in context.workbench.notices().iter().filter(|notice| notice.kind == NoticeKind::Error) {
+        ui.horizontal_top(|ui| {
+            let color = theme::palette(ui).bad;
+            ui.label(egui::RichText::new("✖").color(color));
+            if symbol_button(ui, "×", shell_words::DISMISS).clicked() {
+                context.commands.push(Command::DismissNotice(notice.id));
+            }
+            ui.add(egui::Label::new(egui::RichText::new(&notice.message).color(color)).wrap());
+        });
+    }
+}
+
+fn recent(ui: &mut Ui, context: &mut PanelContext<'_>, recent_files: &[PathBuf]) {
+    if recent_files.is_empty() {
+        return;
+    }
+    ui.add_space(8.0);
+    ui.label(theme::dim(ui, words::RECENT));
+    for path in recent_files {
+        if ui.link(path.display().to_string()).clicked() {
+            context.commands.push(Command::Open(path.clone()));
+        }
+    }
+}
+
+fn samples_grid(ui: &mut Ui, context: &mut PanelContext<'_>, state: &StartState) {
+    let width = ui.available_width();
+    let num_columns = (2..=4).rev().find(|columns| fits(width, *columns)).unwrap_or(1);
+    let card_width = (width - gaps(num_columns)) / count_points(num_columns);
+    let samples: Vec<usize> = (0..samples::ALL.len()).collect();
+    ui.spacing_mut().item_spacing = vec2(theme::GAP, theme::GAP);
+    for row in samples.chunks(num_columns) {
+        ui.horizontal(|ui| {
+            for &sample_idx in row {
+                sample_card(ui, card_width, context, state, sample_idx);
+            }
+        });
+    }
+}
+
+fn fits(width: f32, num_columns: usize) -> bool {
+    MIN_CARD_WIDTH * count_points(num_columns) + gaps(num_columns) <= width
+}
+
+fn gaps(num_columns: usize) -> f32 {
+    theme::GAP * count_points(num_columns.saturating_sub(1))
+}
+
+#[expect(clippy::cast_precision_loss, reason = "a handful of columns")]
+const fn count_points(count: usize) -> f32 {
+    count as f32
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "half of a window's width, and the cast saturates")]
+fn round_points(value: f32) -> i8 {
+    value.round() as i8
+}
+
+fn sample_card(ui: &mut Ui, width: f32, context: &mut PanelContext<'_>, state: &StartState, sample_idx: usize) {
+    let Some(sample) = samples::ALL.get(sample_idx) else { return };
+    let (name, lesson) = words::sample_lesson(sample.file_name);
+    let (rect, response) = ui.allocate_exact_size(vec2(width, CARD_HEIGHT), Sense::click());
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, words::open_sample(name)));
+    if ui.is_rect_visible(rect) {
+        let is_hot = response.hovered() || response.has_focus();
+        let preview = state.previews.get(sample_idx).and_then(Option::as_ref);
+        let sizes = match preview {
+            Some(preview) => words::sizes(preview.num_stations, preview.num_captures, preview.is_points_only),
+            None if state.is_reading() => words::READING.to_owned(),
+            None => String::new(),
+        };
+        paint_card(ui, rect, is_hot, preview, [name, lesson, &sizes]);
+    }
+    if response.clicked() {
+        context.commands.push(Command::OpenSample(sample_idx));
+    }
+}
+
+fn paint_card(ui: &Ui, rect: Rect, is_hot: bool, preview: Option<&SamplePreview>, [name, lesson, sizes]: [&str; 3]) {
+    let palette = theme::palette(ui);
+    let painter = ui.painter();
+    let border = Stroke::new(1.0, if is_hot { palette.accent } else { palette.hairline });
+    let radius = CornerRadius::same(theme::RADIUS);
+    painter.rect(rect, radius, palette.surface, border, egui::StrokeKind::Inside);
+    let picture = Rect::from_min_size(rect.min, vec2(rect.width(), PICTURE_HEIGHT)).shrink(1.0);
+    paint::picture(painter, picture, palette, preview);
+    painter.hline(rect.x_range(), picture.bottom(), Stroke::new(1.0, palette.hairline));
+    let left = rect.left() + theme::GAP;
+    let mut y = picture.bottom() + 10.0;
+    painter.text(pos2(left, y), Align2::LEFT_TOP, name, theme::strong_font(), palette.text);
+    y += 22.0;
+    let lesson = WidgetText::from(egui::RichText::new(lesson).color(palette.text_dim)).into_galley(
+        ui,
+        Some(TextWrapMode::Wrap),
+        rect.width() - 2.0 * theme::GAP,
+        FontSelection::Style(TextStyle::Body),
+    );
+    painter.galley(pos2(left, y), lesson, palette.text_dim);
+    let small = TextStyle::Small.resolve(ui.style());
+    let bottom = rect.bottom() - 10.0;
+    painter.text(pos2(left, bottom), Align2::LEFT_BOTTOM, sizes, small, palette.text_dim);
+}

@@ -1,0 +1,146 @@
+//! The bar at the top: menus, the document's title, convention and units, undo and redo.
+
+use egui::{Align, Align2, Button, Layout, MenuBar, TextStyle, Ui, containers::menu::MenuButton, vec2};
+
+use crate::app::Workbench;
+use crate::session::samples;
+use crate::text::shell as words;
+use crate::text::start::sample_lesson;
+
+use super::actions::Action;
+use super::persisted::{Persisted, ThemeChoice};
+use super::{theme, widgets};
+
+/// Scales on offer.
+const SCALES: [f32; 6] = [0.8, 0.9, 1.0, 1.25, 1.5, 2.0];
+
+/// Draws the bar.
+pub fn show(ui: &mut Ui, workbench: &Workbench, persisted: &mut Persisted, actions: &mut Vec<Action>) {
+    let full = ui.max_rect();
+    ui.horizontal_centered(|ui| {
+        ui.add_space(8.0);
+        ui.label(theme::strong(words::PROGRAM));
+        ui.add_space(8.0);
+        MenuBar::new().ui(ui, |ui| menus(ui, workbench, persisted, actions));
+        let left = ui.cursor().left();
+        let right = ui
+            .with_layout(Layout::right_to_left(Align::Center), |ui| {
+                right_side(ui, workbench, actions);
+                ui.cursor().right()
+            })
+            .inner;
+        title(ui, workbench, full, left..right);
+    });
+}
+
+fn menus(ui: &mut Ui, workbench: &Workbench, persisted: &mut Persisted, actions: &mut Vec<Action>) {
+    MenuButton::new(words::FILE).ui(ui, |ui| {
+        item(ui, workbench, Action::Open, actions);
+        ui.menu_button(words::OPEN_SAMPLE, |ui| {
+            for (idx, sample) in samples::ALL.iter().enumerate() {
+                if ui.button(sample_lesson(sample.file_name).0).clicked() {
+                    actions.push(Action::OpenSample(idx));
+                    ui.close();
+                }
+            }
+        });
+        ui.separator();
+        item(ui, workbench, Action::Save, actions);
+        item(ui, workbench, Action::SaveAs, actions);
+        ui.separator();
+        item(ui, workbench, Action::Close, actions);
+        item(ui, workbench, Action::Quit, actions);
+    });
+    MenuButton::new(words::EDIT).ui(ui, |ui| {
+        item(ui, workbench, Action::Undo, actions);
+        item(ui, workbench, Action::Redo, actions);
+    });
+    MenuButton::new(words::VIEW).ui(ui, |ui| {
+        ui.label(theme::dim(ui, words::THEME));
+        for (choice, name) in [
+            (ThemeChoice::Light, words::LIGHT),
+            (ThemeChoice::Dark, words::DARK),
+            (ThemeChoice::System, words::FOLLOW_SYSTEM),
+        ] {
+            ui.radio_value(&mut persisted.theme, choice, name);
+        }
+        ui.separator();
+        ui.label(theme::dim(ui, words::SCALE));
+        for scale in SCALES {
+            ui.radio_value(&mut persisted.scale, scale, format!("{:.0} %", scale * 100.0));
+        }
+        ui.separator();
+        ui.checkbox(&mut persisted.inspector_open, words::INSPECTOR);
+    });
+    MenuButton::new(words::HELP).ui(ui, |ui| item(ui, workbench, Action::Help, actions));
+}
+
+fn item(ui: &mut Ui, workbench: &Workbench, action: Action, actions: &mut Vec<Action>) {
+    let refusal = action.refusal(workbench);
+    let mut button = Button::new(action.label(workbench));
+    if let Some(shortcut) = action.shortcut() {
+        button = button.shortcut_text(ui.ctx().format_shortcut(&shortcut));
+    }
+    let mut response = ui.add_enabled(refusal.is_none(), button);
+    if let Some(reason) = refusal {
+        response = response.on_disabled_hover_text(reason);
+    }
+    if response.clicked() {
+        actions.push(action);
+        ui.close();
+    }
+}
+
+/// From right to left, as the layout runs.
+fn right_side(ui: &mut Ui, workbench: &Workbench, actions: &mut Vec<Action>) {
+    ui.add_space(8.0);
+    for (action, name) in [(Action::Redo, words::REDO), (Action::Undo, words::UNDO)] {
+        let refusal = action.refusal(workbench);
+        let response = ui.add_enabled(refusal.is_none(), Button::new(name));
+        let response = match refusal {
+            Some(reason) => response.on_disabled_hover_text(reason),
+            None => response.on_hover_text(action.label(workbench)),
+        };
+        if response.clicked() {
+            actions.push(action);
+        }
+    }
+    if let Some(document) = workbench.document() {
+        let convention = document.session.robot.pose_convention;
+        widgets::chip(ui, words::UNITS, words::UNITS_HINT);
+        widgets::chip(ui, convention.label, &words::convention_hint(convention.formula));
+    }
+}
+
+/// The document's title in the middle of the window, or as near to it as the room between menus and chips allows.
+fn title(ui: &Ui, workbench: &Workbench, full: egui::Rect, free: std::ops::Range<f32>) {
+    let palette = theme::palette(ui);
+    let (text, color, is_unsaved) = match workbench.document() {
+        Some(document) => (document.title(), palette.text, document.is_unsaved()),
+        None => (words::NO_TITLE.to_owned(), palette.text_dim, false),
+    };
+    let dot_room = if is_unsaved { 20.0 } else { 0.0 };
+    let room = free.end - free.start - 32.0 - dot_room;
+    if room < 40.0 {
+        return;
+    }
+    let font = TextStyle::Body.resolve(ui.style());
+    let job = egui::text::LayoutJob {
+        wrap: egui::text::TextWrapping::truncate_at_width(room),
+        ..egui::text::LayoutJob::simple_singleline(text, font, color)
+    };
+    let galley = ui.painter().layout_job(job);
+    let half = (galley.size().x + dot_room) / 2.0;
+    let center_x = full.center().x.clamp(free.start + 16.0 + half, free.end - 16.0 - half);
+    let left_center = egui::pos2(center_x - half, full.center().y);
+    let rect = Align2::LEFT_CENTER.anchor_size(left_center, galley.size());
+    ui.painter().galley(rect.min, galley, color);
+    if is_unsaved {
+        let dot = rect.right_center() + vec2(12.0, 0.0);
+        ui.painter().circle_filled(dot, 5.0, palette.warn);
+        let dot_rect = egui::Rect::from_center_size(dot, vec2(16.0, 16.0));
+        let response = ui.interact(dot_rect, ui.scope_id().with("unsaved"), egui::Sense::hover());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, words::UNSAVED));
+        response.on_hover_text(words::UNSAVED);
+    }
+}

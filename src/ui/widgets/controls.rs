@@ -1,0 +1,27 @@
+//! Small controls whose visible text is shorter than the name that a screen reader needs.
+
+use egui::{Button, Response, RichText, Ui, WidgetInfo, Role};
+
+use crate::ui::theme;
+
+/// A checkbox without visible text, named `name`.
+pub fn named_checkbox(ui: &mut Ui, checked: &mut bool, name: &str) -> Response {
+    let response = ui.checkbox(checked, "");
+    let is_checked = *checked;
+    response.widget_info(|| WidgetInfo::selected(Role::CheckBox, ui.is_enabled(), is_checked, name));
+    response
+}
+
+/// A button without frame that shows a symbol, named `name`.
+pub fn symbol_button(ui: &mut Ui, symbol: &str, name: &str) -> Response {
+    let text = RichText::new(symbol).color(theme::palette(ui).text_dim);
+    let response = ui.add(Button::new(text).frame(false));
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, ui.is_enabled(), name));
+    response
+}
+
+/// The button of the next action, in the accent colour. At most one is in sight.
+pub fn primary_button(ui: &mut Ui, text: &str) -> Response {
+    let palette = theme::palette(ui);
+    ui.add(Button::new(theme::strong(text).color(palette.on_accent)).fill(palette.accent).stroke((0.0, palette.accent)))
+}
