@@ -8,7 +8,7 @@ use crate::session::check::{Finding, findings};
 use crate::session::format::{Loaded, load_with_notes};
 use crate::text::check::finding_message;
 
-use super::refuse_input;
+use super::{EXIT_WRONG_INPUT, fail};
 
 /// Arguments of `handeye check`.
 #[derive(Clone, Debug, clap::Args)]
@@ -26,7 +26,7 @@ pub fn run(args: &CheckArgs) -> ExitCode {
             let _ = io::stdout().write_all(listing(&loaded).as_bytes());
             ExitCode::SUCCESS
         }
-        Err(error) => refuse_input(&error),
+        Err(error) => fail(EXIT_WRONG_INPUT, &error),
     }
 }
 

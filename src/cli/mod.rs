@@ -8,6 +8,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 pub mod check;
+pub mod screenshot;
 pub mod simulate;
 pub mod solve;
 
@@ -39,6 +40,8 @@ pub enum Command {
     Check(check::CheckArgs),
     /// Writes a simulated session with its truth
     Simulate(simulate::SimulateArgs),
+    /// Draws a step of the window into a PNG file, without a display
+    Screenshot(screenshot::ScreenshotArgs),
 }
 
 impl Command {
@@ -49,6 +52,7 @@ impl Command {
             Self::Solve(args) => solve::run(args),
             Self::Check(args) => check::run(args),
             Self::Simulate(args) => simulate::run(args),
+            Self::Screenshot(args) => screenshot::run(args),
         }
     }
 }

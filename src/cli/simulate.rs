@@ -10,7 +10,7 @@ use crate::calibrate::Mount;
 use crate::session::{Session, save};
 use crate::simulate::{Dirt, SimulationOptions, simulate};
 
-use super::refuse_input;
+use super::{EXIT_WRONG_INPUT, fail};
 
 /// What is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -171,9 +171,9 @@ pub fn run(args: &SimulateArgs) -> ExitCode {
     match simulated_session(args) {
         Ok(session) => match save(&session, &args.out) {
             Ok(()) => ExitCode::SUCCESS,
-            Err(error) => refuse_input(&error),
+            Err(error) => fail(EXIT_WRONG_INPUT, &error),
         },
-        Err(refusal) => refuse_input(&refusal),
+        Err(refusal) => fail(EXIT_WRONG_INPUT, &refusal),
     }
 }
 
