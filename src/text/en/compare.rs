@@ -1,6 +1,6 @@
 //! The comparison panel.
 
-use crate::calibrate::{Solution, VerdictReason};
+use crate::calibrate::{Method, Solution, VerdictReason};
 
 use super::{methods, warnings};
 
@@ -16,12 +16,14 @@ pub const WHY: &str = "Why?";
 pub const NO_METHOD: &str = "No method could compute a calibration; each card says what it needs.";
 /// Before the toggles of the methods.
 pub const SHOW: &str = "Show";
-/// Before the choice of the error's reference.
-pub const ERRORS: &str = "errors";
 /// Errors relative to the first station, as in the paper.
-pub const FROM_FIRST: &str = "from first station";
+pub const FROM_FIRST: &str = "from first";
+/// The same, on hover.
+pub const FROM_FIRST_HINT: &str = "Errors relative to the first station, as in the paper";
 /// Errors about the mean.
-pub const ABOUT_MEAN: &str = "about the mean";
+pub const ABOUT_MEAN: &str = "about mean";
+/// The same, on hover.
+pub const ABOUT_MEAN_HINT: &str = "Errors about the mean of the stations used: no station is singled out";
 /// Toggles the layout of the paper's tables.
 pub const PAPER_LAYOUT: &str = "paper layout";
 /// Toggles the matrices.
@@ -47,7 +49,9 @@ pub const BALL_IN_SENSOR: &str = "ball in sensor / mm";
 /// Paper layout: error.
 pub const ERROR: &str = "error / mm";
 /// Legend of the tints.
-pub const TINT_LEGEND: &str = "error size / mm";
+pub const TINT_LEGEND: &str = "error ≥";
+/// Unit of the tints' legend.
+pub const TINT_UNIT: &str = "mm";
 /// A station that takes no part.
 pub const LEFT_OUT: &str = "left out";
 /// A station that takes part, but which this method could not use.
@@ -121,6 +125,17 @@ pub fn headline_figure(std_mm: &str) -> String {
 #[must_use]
 pub fn verdict_of(method: &str) -> String {
     format!("verdict on: {method}")
+}
+
+/// The method's name in the comparison, where space is short.
+#[must_use]
+pub const fn compared_method(method: Method) -> &'static str {
+    match method {
+        Method::BallFixedPoint => "Fixed point",
+        Method::BallMaxArcStep => "Published stop",
+        Method::BallMaxArc => "Largest arc",
+        Method::BallBundle => "Bundle",
+    }
 }
 
 /// Beginning of the comparison.

@@ -14,7 +14,10 @@ use super::profile::rule;
 
 /// The part of the height that the curve takes; its residuals get the rest.
 const CURVE_PART: f32 = 0.62;
+/// Radius of a step's mark, points.
 const STEP_RADIUS: f32 = 3.2;
+/// Half the width of the published stop's label with some room, points.
+const STOP_LABEL_HALF_WIDTH: f32 = 62.0;
 
 /// What the pointer does.
 #[derive(Clone, Copy, Debug, Default)]
@@ -149,14 +152,20 @@ fn paint_curve(ui: &Ui, canvas: &Canvas, sweep: &Sweep, ball_radius_mm: f64) {
     );
     canvas.note(ui, pos2(middle + half + 6.0, rect.bottom() - 12.0), Align2::LEFT_BOTTOM, &peak, palette.text);
 
-    let offset_mm = sweep.published_stop_mm - sweep.peak_mm;
-    let stop_radius_mm = (ball_radius_mm * ball_radius_mm - offset_mm * offset_mm).max(0.0).sqrt();
-    let stop = canvas.at(sweep.published_stop_mm, stop_radius_mm) + vec2(0.0, 16.0);
+    let on_curve = |travel_mm: f64| {
+        let offset_mm = travel_mm - sweep.peak_mm;
+        canvas.at(travel_mm, (ball_radius_mm * ball_radius_mm - offset_mm * offset_mm).max(0.0).sqrt())
+    };
+    let stop = on_curve(sweep.published_stop_mm) + vec2(0.0, 16.0);
     let stop_color = theme::method_color(Method::BallMaxArcStep);
     let surface = palette.surface;
     charts::marker(&canvas.painter, MarkerShape::Down, stop, 5.0, surface, Stroke::new(1.4, stop_color));
     let words = text::published_stop(&widgets::signed(sweep.published_stop_mm, 2));
-    canvas.note(ui, stop + vec2(0.0, 9.0), Align2::CENTER_TOP, &words, palette.text_dim);
+    // The label stands where the curve leaves room for it on both sides, but not out of sight of its mark.
+    let half_width_mm = f64::from(STOP_LABEL_HALF_WIDTH) / f64::from(canvas.scale().max(f32::MIN_POSITIVE));
+    let flanks = [-half_width_mm, half_width_mm].map(|side| on_curve(sweep.published_stop_mm + side).y);
+    let top = (flanks[0].max(flanks[1]) + 6.0).clamp(stop.y + 9.0, stop.y + 60.0);
+    canvas.note(ui, pos2(stop.x, top), Align2::CENTER_TOP, &words, palette.text_dim);
 }
 
 fn paint_step(ui: &Ui, canvas: &Canvas, [x, y]: [f64; 2], std: f64, is_selected: bool) {

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::rc::Rc;
 
-use egui::{Align, ComboBox, Frame, Key, Layout, Margin, Modifiers, ScrollArea, Ui, UiBuilder, vec2};
+use egui::{Align, ComboBox, Frame, Key, Layout, Margin, Modifiers, ScrollArea, Ui, UiBuilder};
 
 use crate::app::{Document, Results};
 use crate::calibrate::Sweep;
@@ -21,8 +21,10 @@ const LIST_WIDTH: f32 = 184.0;
 const SIDE_BY_SIDE_FROM: f32 = 560.0;
 /// Height of each card when they stand above each other.
 const STACKED_HEIGHT: f32 = 420.0;
-/// Height of the strips above and below the plots.
+/// Height of the strip above the plots.
 const STRIP_HEIGHT: f32 = 44.0;
+/// Height of the strip below the plots: two lines of text.
+const BOTTOM_HEIGHT: f32 = 62.0;
 
 /// Revisions that a cached model was made from.
 type Revisions = (u64, Option<u64>);
@@ -207,7 +209,7 @@ fn plots(
     let is_out_of_date = results.is_some_and(|results| results.revision != document.revision);
     top_strip(ui, station, sweep, view.as_deref(), selection, &mut state.fit, is_out_of_date);
 
-    let bottom_height = sweep.map_or(0.0, |_| STRIP_HEIGHT + 8.0 + theme::GAP);
+    let bottom_height = sweep.map_or(0.0, |_| BOTTOM_HEIGHT + theme::GAP);
     let height = ui.available_height() - bottom_height;
     let title = text::profile_title(&station.label, shown_capture + 1);
     let ball_radius_mm = model::ball_radius_mm(&document.session);
@@ -366,9 +368,8 @@ fn curve_card(
 
 fn bottom_strip(ui: &mut Ui, sweep: Option<&Sweep>) {
     let Some(sweep) = sweep else { return };
-    widgets::card(ui, "", |_| {}, |ui| {
-        Frame::new().inner_margin(Margin::symmetric(12, 8)).show(ui, |ui| {
-            ui.set_min_size(vec2(ui.available_width(), STRIP_HEIGHT - 16.0));
+    widgets::card_with_height(ui, "", BOTTOM_HEIGHT, |_| {}, |ui| {
+        Frame::new().inner_margin(Margin::symmetric(12, 9)).show(ui, |ui| {
             ui.horizontal_wrapped(|ui| {
                 ui.label(theme::strong(text::RULE_AND_CURVE));
                 let sentence = text::rule_and_curve(

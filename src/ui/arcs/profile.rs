@@ -64,21 +64,23 @@ fn entries(ui: &Ui, model: &ProfileModel) -> Vec<LegendEntry> {
     let mut entries = Vec::new();
     let mut add = |glyph, color, text| entries.push(LegendEntry { glyph, color, text });
     let circle = MarkerShape::Circle;
-    if let Ok(section) = &model.section {
+    if model.section.is_ok() {
         add(LegendGlyph::Solid(circle), theme::INLIER, text::inliers(model.count(PointClass::Inlier)));
         let num_outliers = model.count(PointClass::Outlier);
         if num_outliers > 0 {
             add(LegendGlyph::Hollow(circle), theme::OUTLIER, text::outliers(num_outliers));
         }
-        let section_color = theme::method_color(crate::calibrate::Method::BallMaxArc);
-        add(LegendGlyph::Line, section_color, text::section(&radius_words(section)));
     }
     let num_unused = model.count(PointClass::Unused);
     if num_unused > 0 {
         add(LegendGlyph::Solid(circle), theme::UNUSED, text::unused(num_unused));
     }
-    if let (Some(radius_mm), true) = (model.ball_radius_mm, model.section.is_ok()) {
-        add(LegendGlyph::Dashed, palette.text_dim, text::ball(&widgets::fixed(radius_mm, 3)));
+    if let Ok(section) = &model.section {
+        let section_color = theme::method_color(crate::calibrate::Method::BallMaxArc);
+        add(LegendGlyph::Line, section_color, text::section(&radius_words(section)));
+        if let Some(radius_mm) = model.ball_radius_mm {
+            add(LegendGlyph::Dashed, palette.text_dim, text::ball(&widgets::fixed(radius_mm, 3)));
+        }
     }
     entries
 }

@@ -2,7 +2,7 @@
 
 use std::f32::consts::TAU;
 
-use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, pos2, vec2};
+use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2};
 use egui_plot::MarkerShape;
 
 /// Corners of a drawn circle or ellipse: smooth at any size that fits a screen.
@@ -86,22 +86,16 @@ pub fn thinned(points: impl Iterator<Item = Pos2>, clip: Rect, cell: f32) -> Vec
         if let Some(taken) = taken.get_mut(place)
             && !std::mem::replace(taken, true)
         {
-            kept.push(pos2(point.x, point.y));
+            kept.push(point);
         }
     }
     kept
 }
 
-/// The four corners of a small cross.
-pub(super) fn cross(centre: Pos2, radius: f32) -> [[Pos2; 2]; 2] {
-    [
-        [centre - vec2(radius, 0.0), centre + vec2(radius, 0.0)],
-        [centre - vec2(0.0, radius), centre + vec2(0.0, radius)],
-    ]
-}
-
 #[cfg(test)]
 mod tests {
+    use egui::{pos2, vec2};
+
     use super::*;
 
     #[test]

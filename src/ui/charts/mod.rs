@@ -5,7 +5,7 @@
 mod legend;
 mod marks;
 
-use egui::{Id, Painter, Pos2, Rangef, Rect, Response, Ui, pos2};
+use egui::{Id, Painter, Pos2, Rangef, Rect, Response, Sense, Ui, UiBuilder, pos2, vec2};
 use egui_plot::{AxisHints, GridInput, GridMark, Plot, PlotPoint, PlotTransform};
 
 use crate::ui::{theme, widgets};
@@ -13,10 +13,16 @@ use crate::ui::{theme, widgets};
 pub use legend::{LegendEntry, LegendGlyph, legend};
 pub use marks::{dashed_circle, dashed_line, dotted_line, ellipse, error_bar, marker, thinned};
 
-/// Grid lines stand at least this far apart, points.
-const GRID_SPACING: f32 = 44.0;
+/// Grid lines of the y axis stand at least this far apart, points.
+const GRID_SPACING: f32 = 28.0;
+/// Those of the x axis so many times as far, because their labels stand side by side.
+const X_SPACING_FACTOR: f64 = 1.7;
 /// Room for the tick labels and the title of a y axis, points; fixed, so that plots above each other line up.
 const Y_AXIS_WIDTH: f32 = 44.0;
+/// Room between a card's border and the title of the y axis, points.
+const LEFT_MARGIN: f32 = 6.0;
+/// Room for the half of the last tick label that stands beyond the axis, points.
+const RIGHT_MARGIN: f32 = 14.0;
 /// Free room around the data, as a part of its extent.
 const MARGIN: f64 = 0.06;
 
@@ -145,8 +151,8 @@ impl<'a> Chart<'a> {
             .grid_color(palette.hairline)
             .grid_fade(0.0)
             .grid_spacing(Rangef::new(GRID_SPACING, GRID_SPACING + 1.0))
-            .x_grid_spacer(move |input| if has_names { whole_marks(&input) } else { marks(&input) })
-            .y_grid_spacer(|input| marks(&input))
+            .x_grid_spacer(move |input| if has_names { whole_marks(&input) } else { marks(&input, X_SPACING_FACTOR) })
+            .y_grid_spacer(|input| marks(&input, 1.0))
             .custom_x_axes(vec![x_axis])
             .custom_y_axes(vec![y_axis]);
         if self.has_equal_scales {
@@ -161,7 +167,10 @@ impl<'a> Chart<'a> {
         }
         let mut fitted = *is_fitted;
         let extent = self.extent.with_margin();
-        let shown = plot.show(ui, |plot_ui| {
+        let (outer, _) = ui.allocate_exact_size(vec2(ui.available_width(), self.height), Sense::hover());
+        let inner = Rect::from_min_max(outer.min + vec2(LEFT_MARGIN, 0.0), outer.max - vec2(RIGHT_MARGIN, 0.0));
+        let mut inside = ui.new_child(UiBuilder::new().max_rect(inner));
+        let shown = plot.show(&mut inside, |plot_ui| {
             let response = plot_ui.response();
             if response.dragged() || (response.hovered() && plot_ui.ctx().input(|input| input.zoom_delta() - 1.0).abs() > 0.0) {
                 fitted = has_names;
@@ -243,12 +252,15 @@ impl Canvas {
         let top = wanted.top().clamp(room.top(), (room.bottom() - galley.size().y).max(room.top()));
         let rect = Rect::from_min_size(pos2(left, top), galley.size());
         // A veil, so that the text is legible across lines and points.
-        self.painter.rect_filled(rect.expand2(egui::vec2(3.0, 1.0)), 2.0, theme::palette(ui).surface.gamma_multiply(0.8));
+        self.painter.rect_filled(rect.expand2(vec2(3.0, 1.0)), 2.0, theme::palette(ui).surface.gamma_multiply(0.8));
         self.painter.galley(rect.min, galley, color);
     }
 }
 
 fn tick(mark: GridMark) -> String {
+    if mark.value.abs() < mark.step_size * 1e-6 {
+        return "0".to_owned();
+    }
     let decimals = (-mark.step_size.log10()).ceil().clamp(0.0, 6.0);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to 0..=6")]
     widgets::fixed(mark.value, decimals as usize)
@@ -260,8 +272,8 @@ fn name_at(names: &[String], value: f64) -> String {
 }
 
 /// Grid lines at 1, 2 or 5 times a power of ten.
-fn marks(input: &GridInput) -> Vec<GridMark> {
-    let smallest = input.base_step_size * 1.02;
+fn marks(input: &GridInput, factor: f64) -> Vec<GridMark> {
+    let smallest = input.base_step_size * factor * 1.05;
     if !(smallest.is_finite() && smallest > 0.0) {
         return Vec::new();
     }
@@ -296,7 +308,7 @@ mod tests {
     #[test]
     fn grid_lines_fall_on_round_numbers() {
         let input = GridInput { bounds: (-0.31, 0.29), base_step_size: 0.07 };
-        let values: Vec<f64> = marks(&input).iter().map(|mark| mark.value).collect();
+        let values: Vec<f64> = marks(&input, 1.0).iter().map(|mark| mark.value).collect();
         assert_eq!(values.len(), 5);
         assert!((values[0] + 0.3).abs() < 0.11, "{values:?}");
         assert_eq!(tick(GridMark { value: -0.2, step_size: 0.1 }), "−0.2");

@@ -18,7 +18,7 @@ const HEAD_HEIGHT: f32 = 34.0;
 /// Height of the coloured edge.
 const EDGE_HEIGHT: f32 = 3.0;
 /// Parts of a row: station, x y z, Δx Δy Δz, |e|.
-const PARTS: [f32; 8] = [64.0, 68.0, 62.0, 68.0, 56.0, 56.0, 56.0, 52.0];
+const PARTS: [f32; 8] = [46.0, 73.0, 73.0, 73.0, 54.0, 54.0, 54.0, 51.0];
 
 /// How the tables are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

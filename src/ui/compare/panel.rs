@@ -88,7 +88,11 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut CompareStat
     let model = state.model(document, results);
     let is_out_of_date = !workbench.results_are_current();
     let height = ui.available_height();
-    ScrollArea::vertical().id_salt("compare").auto_shrink([false, false]).show(ui, |ui| {
+    // The scroll bar gets the panel's margin, so that it covers no numbers.
+    let area = ui.available_rect_before_wrap();
+    let mut page = ui.new_child(UiBuilder::new().max_rect(area.with_max_x(area.right() + theme::GAP - 2.0)));
+    ScrollArea::vertical().id_salt("compare").auto_shrink([false, false]).show(&mut page, |ui| {
+        ui.set_max_width(area.width());
         let top = ui.cursor().top();
         ui.spacing_mut().item_spacing.y = theme::GAP;
         verdict::show(ui, &model, is_out_of_date, &mut state.is_explained);
@@ -114,6 +118,7 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut CompareStat
             differences::show(ui, &model.differences, shown.contains(&Method::BallMaxArcStep));
         }
     });
+    ui.advance_cursor_after_rect(area);
 }
 
 fn empty(ui: &mut Ui, sentence: &str) {
@@ -127,7 +132,7 @@ fn empty(ui: &mut Ui, sentence: &str) {
 
 fn toggles(ui: &mut Ui, model: &CompareModel, shown: &[Method], state: &mut CompareState) {
     ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = vec2(6.0, 6.0);
+        ui.spacing_mut().item_spacing = vec2(5.0, 6.0);
         ui.spacing_mut().button_padding.x = 8.0;
         ui.label(theme::dim(ui, text::SHOW));
         for column in &model.columns {
@@ -144,15 +149,16 @@ fn toggles(ui: &mut Ui, model: &CompareModel, shown: &[Method], state: &mut Comp
                 state.shown = Some(COLUMN_ORDER.into_iter().filter(|method| chosen(*method)).collect());
             }
         }
-        ui.add_space(10.0);
-        ui.label(theme::dim(ui, text::ERRORS));
-        ui.selectable_value(&mut state.reference, ErrorReference::FirstStation, text::FROM_FIRST);
-        ui.selectable_value(&mut state.reference, ErrorReference::Mean, text::ABOUT_MEAN);
-        ui.add_space(10.0);
+        ui.add_space(2.0);
+        ui.selectable_value(&mut state.reference, ErrorReference::FirstStation, text::FROM_FIRST)
+            .on_hover_text(text::FROM_FIRST_HINT);
+        ui.selectable_value(&mut state.reference, ErrorReference::Mean, text::ABOUT_MEAN)
+            .on_hover_text(text::ABOUT_MEAN_HINT);
+        ui.add_space(2.0);
         ui.toggle_value(&mut state.has_paper_layout, text::PAPER_LAYOUT);
         ui.toggle_value(&mut state.has_matrices, text::MATRICES);
-        ui.add_space(10.0);
-        table::tint_legend(ui, text::TINT_LEGEND);
+        ui.add_space(2.0);
+        table::tint_legend(ui);
     });
 }
 

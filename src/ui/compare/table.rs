@@ -3,6 +3,7 @@
 
 use egui::{Align2, Color32, FontId, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
+use crate::text::compare as text;
 use crate::ui::figures::all_digits;
 use crate::ui::{theme, widgets};
 
@@ -127,16 +128,17 @@ pub fn coordinate(value_mm: f64) -> String {
 }
 
 /// The legend of the tints.
-pub fn tint_legend(ui: &mut Ui, title: &str) {
-    ui.label(theme::dim(ui, title).size(theme::SMALL_SIZE));
+pub fn tint_legend(ui: &mut Ui) {
+    ui.label(theme::dim(ui, text::TINT_LEGEND).size(theme::SMALL_SIZE));
     ui.spacing_mut().item_spacing.x = 2.0;
     for (class, step_mm) in TINT_STEPS_MM.iter().enumerate() {
-        let (rect, _) = ui.allocate_exact_size(vec2(38.0, 16.0), Sense::hover());
+        let (rect, _) = ui.allocate_exact_size(vec2(27.0, 18.0), Sense::hover());
         ui.painter().rect_filled(rect, 2.0, class_tint(class + 1));
         let color = theme::palette(ui).text_dim;
         let font = FontId::proportional(theme::SMALL_SIZE);
-        ui.painter().text(rect.center(), Align2::CENTER_CENTER, format!("≥ {step_mm}"), font, color);
+        ui.painter().text(rect.center(), Align2::CENTER_CENTER, step_mm, font, color);
     }
+    ui.label(theme::dim(ui, text::TINT_UNIT).size(theme::SMALL_SIZE));
 }
 
 #[cfg(test)]

@@ -22,7 +22,7 @@ pub fn show(ui: &mut Ui, model: &CompareModel, is_out_of_date: bool, is_explaine
                 });
                 return;
             };
-            let is_wide = ui.available_width() >= 760.0;
+            let is_wide = fits_one_line(ui, model, band);
             ui.horizontal(|ui| {
                 ui.set_min_height(30.0);
                 verdict_words(ui, band);
@@ -49,6 +49,25 @@ pub fn show(ui: &mut Ui, model: &CompareModel, is_out_of_date: bool, is_explaine
     });
 }
 
+/// Whether verdict and comparison have room beside each other.
+fn fits_one_line(ui: &Ui, model: &CompareModel, band: &Band) -> bool {
+    /// The verdict's mark, the button, the note "out of date" and the gaps between all these, points.
+    const OTHERS: f32 = 210.0;
+    let width = |text: &str, size: f32| {
+        let font = egui::FontId::proportional(size);
+        ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::PLACEHOLDER).size().x
+    };
+    let comparison = model.improvement.as_ref().map_or(0.0, |improvement| {
+        let words = text::maximum_error(text::compared_method(improvement.method))
+            + &text::against(method_short_name(improvement.baseline), "0.000")
+            + " 0.000 mm, −00 % ";
+        width(&words, theme::BODY_SIZE)
+    });
+    let headline = text::headline("100") + " " + &text::headline_figure("0.000");
+    let verdict = width(verdict_name(band.verdict), theme::HEADING_SIZE) + width(&headline, theme::BODY_SIZE);
+    verdict + comparison + OTHERS <= ui.available_width()
+}
+
 fn verdict_words(ui: &mut Ui, band: &Band) {
     let color = theme::verdict_color_in(theme::palette(ui), band.verdict);
     ui.label(theme::heading(verdict_mark(band.verdict)).color(color));
@@ -72,7 +91,7 @@ fn better_by(ui: &mut Ui, improvement: &Improvement, is_reversed: bool) {
     });
     let baseline = text::against(method_short_name(improvement.baseline), &widgets::fixed(improvement.baseline_error_mm, 3));
     let mut words = vec![
-        egui::RichText::new(text::maximum_error(method_name(improvement.method))),
+        egui::RichText::new(text::maximum_error(text::compared_method(improvement.method))),
         theme::strong(format!("{} mm,", widgets::fixed(improvement.error_mm, 3))),
     ];
     words.extend(change);
