@@ -1,11 +1,11 @@
 //! The pose table.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
-use egui::{Align, Key, Layout, Modifiers, RichText, Sense, Ui, vec2};
+use egui::{Key, Modifiers, RichText, Sense, Ui, vec2};
 use egui_extras::{Column, TableRow};
 
-use crate::app::{Command, Document, Results};
+use crate::app::{Command, Document};
 use crate::text::poses as words;
 use crate::ui::widgets::tables::{faded_number_cell, head, number_cell, number_column, number_head, table};
 use crate::ui::widgets::{card_with_height, fixed, named_checkbox, symbol_button};
@@ -18,15 +18,28 @@ const POSITION_DECIMALS: usize = 3;
 /// Decimals of an angle in degrees: what controllers report.
 const ANGLE_DECIMALS: usize = 3;
 
-/// What is unfolded.
+/// What is unfolded, and what the check of the session says of its stations.
 #[derive(Debug, Default)]
 pub struct PosesState {
     unfolded: BTreeSet<usize>,
+    checks: BTreeMap<String, Vec<String>>,
+    checked_revision: Option<u64>,
+}
+
+impl PosesState {
+    /// Checks the session anew if it has changed.
+    fn check(&mut self, document: &Document) {
+        if self.checked_revision != Some(document.revision) {
+            self.checked_revision = Some(document.revision);
+            self.checks = model::checks(&document.session);
+        }
+    }
 }
 
 /// Draws the step.
 pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut PosesState) {
     let Some(document) = context.workbench.document() else { return };
+    state.check(document);
     let num_stations = document.session.stations.len();
     let num_enabled = document.session.stations.iter().filter(|station| station.enabled).count();
     let rows = model::rows(&document.session, &state.unfolded);
@@ -191,7 +204,11 @@ fn show_station(
     row.col(|ui| {
         ui.add_space(12.0);
         if station.enabled {
-            check_mark(ui, context.workbench.results(), document, context.selection.method, station_idx);
+            let mut findings = state.checks.get(&station.label).cloned().unwrap_or_default();
+            if let Some(results) = context.workbench.results() {
+                findings.extend(model::findings(&document.session, results, context.selection.method, station_idx));
+            }
+            check_mark(ui, &findings);
         } else {
             ui.label(theme::dim(ui, "–")).on_hover_text(words::LEFT_OUT);
         }
@@ -240,22 +257,12 @@ fn pose_cells(row: &mut TableRow<'_, '_>, document: &Document, station_idx: usiz
     }
 }
 
-fn check_mark(
-    ui: &mut Ui,
-    results: Option<&Results>,
-    document: &Document,
-    method: crate::calibrate::Method,
-    station_idx: usize,
-) {
-    let Some(results) = results else { return };
+fn check_mark(ui: &mut Ui, findings: &[String]) {
     let palette = theme::palette(ui);
-    let findings = model::findings(&document.session, results, method, station_idx);
     if findings.is_empty() {
         ui.label(RichText::new("✔").color(palette.good)).on_hover_text(words::FINE);
     } else {
-        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-            ui.label(RichText::new(format!("{} !", findings.len())).color(palette.warn))
-                .on_hover_text(findings.join("\n"));
-        });
+        let text = RichText::new(format!("{} !", findings.len())).color(palette.warn);
+        ui.label(text).on_hover_text(findings.join("\n"));
     }
 }
