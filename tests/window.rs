@@ -114,33 +114,23 @@ fn unticking_a_station_sends_exactly_that_command() {
     let session = session::parse(sample.json.as_bytes(), sample.file_name).expect("the sample is a session");
     let name = pose_words::use_station(&session.stations[1].label);
     workbench.open_session(session, None);
-    let bench = Bench {
-        workbench,
-        selection: Selection::default(),
-        commands: Vec::new(),
-        state: PosesState::default(),
-    };
-    let mut harness = Harness::builder()
-        .with_size(SIZE)
-        .with_context_setup(ui::theme::install)
-        .build_ui_state(
-            |ui, bench: &mut Bench| {
-                let mut context = PanelContext {
-                    workbench: &bench.workbench,
-                    selection: &mut bench.selection,
-                    commands: &mut bench.commands,
-                };
-                poses_panel::show(ui, &mut context, &mut bench.state);
-            },
-            bench,
-        );
+    let bench =
+        Bench { workbench, selection: Selection::default(), commands: Vec::new(), state: PosesState::default() };
+    let mut harness = Harness::builder().with_size(SIZE).with_context_setup(ui::theme::install).build_ui_state(
+        |ui, bench: &mut Bench| {
+            let mut context = PanelContext {
+                workbench: &bench.workbench,
+                selection: &mut bench.selection,
+                commands: &mut bench.commands,
+            };
+            poses_panel::show(ui, &mut context, &mut bench.state);
+        },
+        bench,
+    );
     harness.run_steps(3);
     harness.get_by_label(&name).click();
     harness.run_steps(3);
-    let expected = Command::SetStationEnabled {
-        station_idx: 1,
-        enabled: false,
-    };
+    let expected = Command::SetStationEnabled { station_idx: 1, enabled: false };
     assert_eq!(harness.state().commands, [expected]);
 }
 
@@ -163,10 +153,12 @@ fn an_edit_is_undone_and_redone_with_keys_and_buttons() {
 #[test]
 fn digits_and_arrows_move_through_the_window() {
     let mut harness = window_with("few-rotations.json");
-    for (key, step) in [Key::Num4, Key::Num2, Key::Num1, Key::Num3]
-        .into_iter()
-        .zip([Step::Compare, Step::Arcs, Step::Session, Step::Poses])
-    {
+    for (key, step) in [Key::Num4, Key::Num2, Key::Num1, Key::Num3].into_iter().zip([
+        Step::Compare,
+        Step::Arcs,
+        Step::Session,
+        Step::Poses,
+    ]) {
         harness.key_press(key);
         harness.run_steps(2);
         assert_eq!(harness.state().shell().step(), step);

@@ -184,12 +184,9 @@ impl Shell {
             rail::show(ui, &self.workbench, &self.selection, self.step, actions);
         });
         if self.persisted.inspector_open && self.workbench.document().is_some() {
-            Panel::right("inspector").resizable(false).exact_size(INSPECTOR_WIDTH).frame(bar).show(ui, |ui| {
-                let mut context = PanelContext {
-                    workbench: &self.workbench,
-                    selection: &mut self.selection,
-                    commands,
-                };
+            let beside = surface.inner_margin(Margin { left: 16, right: 8, top: 0, bottom: 0 });
+            Panel::right("inspector").resizable(false).exact_size(INSPECTOR_WIDTH).frame(beside).show(ui, |ui| {
+                let mut context = PanelContext { workbench: &self.workbench, selection: &mut self.selection, commands };
                 inspector::panel::show(ui, &mut context);
             });
         }
@@ -202,11 +199,7 @@ impl Shell {
                 empty_state(ui, actions);
                 return;
             }
-            let mut context = PanelContext {
-                workbench: &self.workbench,
-                selection: &mut self.selection,
-                commands,
-            };
+            let mut context = PanelContext { workbench: &self.workbench, selection: &mut self.selection, commands };
             match self.step {
                 Step::Session => {
                     start::panel::show(ui, &mut context, &mut self.start, &self.persisted.recent_files, actions);
@@ -381,10 +374,7 @@ impl Shell {
         if document.revision != self.seen_revision {
             self.seen_revision = document.revision;
             if is_new {
-                self.selection = Selection {
-                    method: self.selection.method,
-                    ..Selection::default()
-                };
+                self.selection = Selection { method: self.selection.method, ..Selection::default() };
                 self.poses = PosesState::default();
                 self.arcs = ArcsState::default();
                 self.compare = CompareState::default();

@@ -38,9 +38,7 @@ impl Texture {
     fn texel(&self, x: isize, y: isize) -> [f32; 4] {
         let x = x.clamp(0, self.width.cast_signed() - 1).cast_unsigned();
         let y = y.clamp(0, self.height.cast_signed() - 1).cast_unsigned();
-        self.pixels
-            .get(y * self.width + x)
-            .map_or([0.0; 4], |color| color.to_array().map(f32::from))
+        self.pixels.get(y * self.width + x).map_or([0.0; 4], |color| color.to_array().map(f32::from))
     }
 
     fn sample(&self, u: f32, v: f32) -> [f32; 4] {
@@ -83,11 +81,7 @@ impl SoftwareRenderer {
     #[must_use]
     pub fn paint(&self, primitives: &[ClippedPrimitive], pixels_per_point: f32, size_px: [u32; 2]) -> RgbaImage {
         let [width, height] = size_px.map(|side| usize::try_from(side).unwrap_or(0));
-        let mut canvas = Canvas {
-            width,
-            height,
-            pixels: vec![[0.0; 4]; width * height],
-        };
+        let mut canvas = Canvas { width, height, pixels: vec![[0.0; 4]; width * height] };
         for ClippedPrimitive { clip_rect, primitive } in primitives {
             let Primitive::Mesh(mesh) = primitive else { continue };
             let Some(texture) = self.textures.get(&mesh.texture_id) else { continue };
@@ -213,13 +207,7 @@ struct Edge {
 impl Edge {
     fn new(from: &Corner, to: &Corner) -> Self {
         let (dx, dy) = (to.x - from.x, to.y - from.y);
-        Self {
-            origin_x: from.x,
-            origin_y: from.y,
-            dx,
-            dy,
-            owns_border: dy < 0.0 || (dy == 0.0 && dx > 0.0),
-        }
+        Self { origin_x: from.x, origin_y: from.y, dx, dy, owns_border: dy < 0.0 || (dy == 0.0 && dx > 0.0) }
     }
 
     fn at(&self, x: f32, y: f32) -> f32 {
