@@ -26,7 +26,11 @@ fn shell_words(line: &str) -> Vec<String> {
     line.split('"')
         .enumerate()
         .flat_map(|(idx, part)| {
-            if idx % 2 == 1 { vec![part.to_owned()] } else { part.split_whitespace().map(str::to_owned).collect() }
+            if idx % 2 == 1 {
+                vec![part.to_owned()]
+            } else {
+                part.split_whitespace().map(str::to_owned).collect()
+            }
         })
         .collect()
 }
@@ -73,7 +77,9 @@ fn printed_errors_follow_from_printed_centres_but_for_the_known_misprints() {
         let published = session.published.expect("it is from a paper");
         assert_eq!(published.ball_in_base_mm.len(), 5);
         assert_eq!(published.error_from_first_mm.len(), 5);
-        for (row, (ball, printed)) in published.ball_in_base_mm.iter().zip(&published.error_from_first_mm).enumerate() {
+        for (row, (ball, printed)) in
+            published.ball_in_base_mm.iter().zip(&published.error_from_first_mm).enumerate()
+        {
             let error = ball - published.ball_in_base_mm[0];
             for axis in 0..3 {
                 if (error[axis] - printed[axis]).abs() > rounding_mm {

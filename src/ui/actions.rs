@@ -99,6 +99,7 @@ impl Action {
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// The actions whose keys were pressed in this frame.
+#[must_use]
 pub fn pressed(ctx: &egui::Context, workbench: &Workbench) -> Vec<Action> {
     let mut pressed: Vec<Action> = WITH_SHORTCUT
         .into_iter()

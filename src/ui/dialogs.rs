@@ -25,6 +25,7 @@ pub enum UnsavedAnswer {
 }
 
 /// Asks what is to become of unsaved changes.
+#[must_use]
 pub fn ask_unsaved(ctx: &Context, title: &str) -> Option<UnsavedAnswer> {
     let mut answer = None;
     let response = modal(ctx, "unsaved changes").show(ctx, |ui| {

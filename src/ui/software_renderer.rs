@@ -100,7 +100,7 @@ impl SoftwareRenderer {
     }
 }
 
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 struct Corner {
     x: f32,
     y: f32,
@@ -118,6 +118,14 @@ impl Corner {
             v: vertex.uv.y,
             color: vertex.color.to_array().map(f32::from),
         }
+    }
+}
+
+impl Corner {
+    /// Whether colour and texture are exactly the same, so that nothing varies between the two.
+    fn looks_as(&self, other: &Self) -> bool {
+        let bits = |corner: &Self| (corner.color.map(f32::to_bits), corner.u.to_bits(), corner.v.to_bits());
+        bits(self) == bits(other)
     }
 }
 
@@ -152,7 +160,7 @@ impl Canvas {
             std::mem::swap(&mut b, &mut c);
             double_area = -double_area;
         }
-        let is_flat = a.color == b.color && a.color == c.color && (a.u, a.v) == (b.u, b.v) && (a.u, a.v) == (c.u, c.v);
+        let is_flat = a.looks_as(&b) && a.looks_as(&c);
         let flat_source = is_flat.then(|| modulate(texture.sample(a.u, a.v), a.color));
         let edges = [(&b, &c), (&c, &a), (&a, &b)].map(|(from, to)| Edge::new(from, to));
         let top = floor(a.y.min(b.y).min(c.y)).max(clip.rows.start);
