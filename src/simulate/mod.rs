@@ -13,9 +13,12 @@ use crate::session::model::{Capture, Reading, Robot, Sensor, Session, Station, T
 
 use path::{Setup, StationPath};
 use random::Random;
-use scene::{Scene, rounded};
+use scene::{Scene, rounded, rounded_rotation};
 
 pub use options::{Dirt, SimulationOptions};
+
+/// Decimals of reported quaternions where positions and points are rounded: a thousand times finer than any robot is.
+const QUATERNION_DECIMALS: u8 = 9;
 
 /// Random streams, so that each kind of noise can be switched without a change to the others.
 mod stream {
@@ -152,6 +155,10 @@ fn reported(true_base_from_flange: &Rigid, options: &SimulationOptions, is_bad: 
         true_base_from_flange.rotation * so3::exp(orientation_error)
     } else {
         true_base_from_flange.rotation
+    };
+    let rotation = match options.decimals {
+        Some(_) => rounded_rotation(&rotation, QUATERNION_DECIMALS),
+        None => rotation,
     };
     Rigid::from_parts(position.map(|value| rounded(value, options.decimals)).into(), rotation)
 }

@@ -9,9 +9,12 @@ use crate::geometry::{Rigid, Vec3, so3};
 
 use super::options::SimulationOptions;
 use super::random::Random;
+use super::scene::rounded_rotation;
 
 /// Turns by this angle from station to station never line up (the golden angle).
 const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
+/// Decimals of the true mounting's quaternion.
+const MOUNTING_DECIMALS: u8 = 12;
 /// Distance of the ball's near surface along the range axis, about, mm.
 const STANDOFF_MM: f64 = 80.0;
 
@@ -38,12 +41,13 @@ impl Setup {
         } else {
             UnitQuaternion::identity()
         };
+        let mounting = |turn: UnitQuaternion<f64>| rounded_rotation(&(turn * odd_angles * flip), MOUNTING_DECIMALS);
         match options.mount {
             // Turned about the flange's z, the laser looks along it; straight down the flange is a half turn about x.
             Mount::OnFlange => Self {
                 carrier_from_sensor: Rigid::from_parts(
                     Translation3::new(12.0, -3.0, 118.0),
-                    about(Vec3::z(), FRAC_PI_2) * odd_angles * flip,
+                    mounting(about(Vec3::z(), FRAC_PI_2)),
                 ),
                 ball_in_world: Vec3::new(452.0, -118.0, 96.0),
                 world_from_carrier_upright: UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(
@@ -54,7 +58,7 @@ impl Setup {
             Mount::Fixed => Self {
                 carrier_from_sensor: Rigid::from_parts(
                     Translation3::new(820.0, 35.0, 410.0),
-                    about(Vec3::y(), -FRAC_PI_2) * odd_angles * flip,
+                    mounting(about(Vec3::y(), -FRAC_PI_2)),
                 ),
                 ball_in_world: Vec3::new(4.0, -7.0, 132.0),
                 world_from_carrier_upright: about(Vec3::y(), -FRAC_PI_2),

@@ -1,5 +1,7 @@
 //! What a laser line sees: the ball, and the table below it.
 
+use nalgebra::{Quaternion, UnitQuaternion};
+
 use crate::geometry::{Profile, Rigid, Vec3};
 
 use super::options::Dirt;
@@ -138,6 +140,14 @@ pub(super) fn rounded(value: f64, decimals: Option<u8>) -> f64 {
         let scale = 10.0_f64.powi(i32::from(decimals));
         (value * scale).round() / scale
     })
+}
+
+/// A rotation whose quaternion was rounded to so many decimals and normalised again.
+///
+/// The last bits of sines and cosines differ between systems; after rounding the same seed gives the same file.
+pub(super) fn rounded_rotation(rotation: &UnitQuaternion<f64>, decimals: u8) -> UnitQuaternion<f64> {
+    let quaternion = rotation.as_ref().coords.map(|value| rounded(value, Some(decimals)));
+    UnitQuaternion::new_normalize(Quaternion::from_vector(quaternion))
 }
 
 fn add_spikes(z_mm: &mut [Option<f64>], dirt: &mut Random) {
