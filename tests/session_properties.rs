@@ -95,6 +95,11 @@ prop_compose! {
     }
 }
 
+/// Mostly text and digits: with any byte at all, nearly every file would be refused for not being UTF-8.
+fn damage() -> impl Strategy<Value = u8> {
+    prop_oneof![1 => any::<u8>(), 4 => b' '..=b'~', 4 => b'0'..=b'9']
+}
+
 proptest! {
     #[test]
     fn any_session_comes_back_as_it_was_saved(session in session()) {
@@ -106,7 +111,7 @@ proptest! {
 
     #[test]
     fn no_change_of_a_few_bytes_makes_it_panic_or_break_the_line(
-        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..3_u8), 1..6),
+        changes in prop::collection::vec((any::<prop::sample::Index>(), damage(), 0..3_u8), 1..4),
     ) {
         let mut bytes = VALID.as_bytes().to_vec();
         for (index, byte, kind) in changes {
