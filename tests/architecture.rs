@@ -10,17 +10,17 @@ const FLOORS: [(&str, u8); 11] = [
     ("fit", 1),
     ("calibrate", 2),
     ("session", 3),
-    ("report", 4),
     ("simulate", 4),
     ("text", 4),
-    ("app", 5),
-    ("cli", 6),
-    ("ui", 6),
+    ("report", 5),
+    ("app", 6),
+    ("ui", 7),
+    ("cli", 8),
 ];
 
 /// Floors without I/O, threads, clock, log or serde: same input, same bits.
 const PURE: [&str; 3] = ["geometry", "fit", "calibrate"];
-const IMPURE_NAMES: [&str; 7] = ["std::fs", "std::thread", "std::time", "std::io", "serde", "log::", "rand"];
+const IMPURE_NAMES: [&str; 7] = ["std::fs", "std::thread", "std::time", "std::io", "serde", "log::", "rand_core"];
 
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).expect("a folder of the crate") {
