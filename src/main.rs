@@ -3,11 +3,16 @@
 use std::process::ExitCode;
 
 use clap::Parser as _;
-use handeye::cli::Args;
+use handeye::cli::{self, Args};
+use handeye::ui;
 
 fn main() -> ExitCode {
-    match Args::parse().command {
+    let args = Args::parse();
+    match args.command {
         Some(command) => command.run(),
-        None => ExitCode::SUCCESS,
+        None => match ui::run(ui::Start { file: args.file }) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => cli::fail(cli::EXIT_WRONG_INPUT, &error),
+        },
     }
 }

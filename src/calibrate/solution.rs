@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix6;
 
-use crate::geometry::{Flange, Sensor, Transform, Vec3};
+use crate::geometry::{Flange, Mat3, Sensor, Transform, Vec3};
 
 use super::{Method, Mount, Side, Warning};
 
@@ -29,6 +29,14 @@ pub struct Uncertainty {
     pub workspace_point_std_mm: f64,
     /// The point that the headline speaks of, mm.
     pub reference_point_in_sensor_mm: Vec3,
+}
+
+impl Uncertainty {
+    /// Covariance of the rotation as a right perturbation, rad².
+    #[must_use]
+    pub fn rotation_covariance(&self) -> Mat3 {
+        self.covariance.fixed_view::<3, 3>(0, 0).into_owned()
+    }
 }
 
 /// One step of a sweep as the curve shows it.

@@ -7,6 +7,9 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+pub mod check;
+pub mod screenshot;
+pub mod simulate;
 pub mod solve;
 
 /// The input is wrong.
@@ -33,6 +36,12 @@ pub struct Args {
 pub enum Command {
     /// Runs the calibration methods on a session file
     Solve(solve::SolveArgs),
+    /// Validates a session file and lists what is odd about it
+    Check(check::CheckArgs),
+    /// Writes a simulated session with its truth
+    Simulate(simulate::SimulateArgs),
+    /// Draws a step of the window into a PNG file, without a display
+    Screenshot(screenshot::ScreenshotArgs),
 }
 
 impl Command {
@@ -41,6 +50,9 @@ impl Command {
     pub fn run(&self) -> ExitCode {
         match self {
             Self::Solve(args) => solve::run(args),
+            Self::Check(args) => check::run(args),
+            Self::Simulate(args) => simulate::run(args),
+            Self::Screenshot(args) => screenshot::run(args),
         }
     }
 }

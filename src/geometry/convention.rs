@@ -5,7 +5,7 @@
 
 use nalgebra::UnitQuaternion;
 
-use super::{Vec3, so3};
+use super::{Mat3, Vec3, so3};
 
 /// A coordinate axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -114,6 +114,27 @@ impl PoseConvention {
         };
         angles.map(|angle: f64| angle.to_degrees() + 0.0)
     }
+
+    /// Standard deviations (degrees) of the three numbers, from the covariance (rad²) of the rotation as a right
+    /// perturbation. Near gimbal lock they grow without bound, as the numbers do say less and less there.
+    #[must_use]
+    pub fn angles_std_deg(&self, rotation: &UnitQuaternion<f64>, rotation_covariance: &Mat3) -> [f64; 3] {
+        /// Central differences: truncation and rounding both stay below 1e-8.
+        const STEP_RAD: f64 = 1e-5;
+        let mut by_rotation = Mat3::zeros();
+        for axis in 0..3 {
+            let step = Vec3::ith(axis, STEP_RAD);
+            let ahead = self.angles_deg_from_rotation(&(rotation * so3::exp(step)));
+            let behind = self.angles_deg_from_rotation(&(rotation * so3::exp(-step)));
+            for (angle, (ahead, behind)) in ahead.into_iter().zip(behind).enumerate() {
+                // Across ±180° the numbers jump, the angle does not.
+                let change = (ahead - behind + 540.0).rem_euclid(360.0) - 180.0;
+                by_rotation[(angle, axis)] = change / (2.0 * STEP_RAD);
+            }
+        }
+        let covariance = by_rotation * rotation_covariance * by_rotation.transpose();
+        [0, 1, 2].map(|angle| covariance[(angle, angle)].max(0.0).sqrt())
+    }
 }
 
 fn in_product_order(angles: [f64; 3], reversed: bool) -> [f64; 3] {
@@ -205,6 +226,16 @@ mod tests {
             assert!((fanuc[idx] - expected[idx]).abs() < 1e-12);
             assert!((kuka[idx] - expected[2 - idx]).abs() < 1e-12);
         }
+    }
+
+    #[test]
+    fn standard_deviations_follow_the_angles_across_a_half_turn() {
+        let kuka = PoseConvention::by_id("kuka-abc").expect("known");
+        let rotation = kuka.rotation_from_angles_deg([180.0, 0.0, 0.0]);
+        // About the third factor's own axis (x) with 1°, about z with 2°.
+        let covariance = Mat3::from_diagonal(&Vec3::new(1.0, 0.0, 4.0)) * 1.0_f64.to_radians().powi(2);
+        let [a, b, c] = kuka.angles_std_deg(&rotation, &covariance);
+        assert!((a - 2.0).abs() < 1e-6 && b.abs() < 1e-6 && (c - 1.0).abs() < 1e-6, "{a} {b} {c}");
     }
 
     #[test]

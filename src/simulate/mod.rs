@@ -1,1 +1,160 @@
-//! x
+//! Simulated sessions with their truth: for trying the program without a robot, and for measuring its accuracy.
+
+mod options;
+mod path;
+mod random;
+mod scene;
+
+use std::sync::Arc;
+
+use crate::calibrate::{Mount, SideChoice};
+use crate::geometry::{Rigid, Transform, Vec3, so3};
+use crate::session::model::{Capture, Reading, Robot, Sensor, Session, Station, Target, Truth, UnknownFields};
+
+use path::{StationPath, World};
+use random::Random;
+use scene::{Scene, rounded};
+
+pub use options::{Dirt, SimulationOptions};
+
+/// Random streams, so that each kind of noise can be switched without a change to the others.
+mod stream {
+    pub const PATH: u64 = 1;
+    pub const PROFILE: u64 = 2;
+    pub const POSE: u64 = 3;
+    pub const DIRT: u64 = 4;
+}
+
+/// A session with a ball, measured as `options` say, and the truth beside it.
+///
+/// Every capture's reported pose is its true pose with noise of its own; the profile is what the sensor sees from
+/// the true pose. Without noise and rounding the data are exact to `f64`. Values beyond their limits are taken as the
+/// limit, see [`SimulationOptions`].
+#[must_use]
+pub fn simulate(options: &SimulationOptions) -> Session {
+    let options = options.within_limits();
+    let world = World::new(&options);
+    let scene = Scene {
+        ball_in_world: world.ball_in_world,
+        radius_mm: options.radius_mm,
+        num_points: options.num_points,
+        range_sign: if options.z_towards_sensor { -1.0 } else { 1.0 },
+        profile_std_mm: options.profile_std_mm,
+        dirt: options.dirt,
+        decimals: options.decimals,
+    };
+    let mut randoms = Randoms::new(options.seed);
+    let stations = (0..options.num_stations)
+        .map(|station_idx| station(&options, &world, &scene, station_idx, &mut randoms))
+        .collect();
+    let known = |std: f64| (std > 0.0).then_some(std);
+    Session {
+        name: format!("Simulated ball, {} mm", options.radius_mm),
+        notes: String::new(),
+        robot: Robot {
+            model: "simulated".to_owned(),
+            position_std_mm: known(options.position_std_mm),
+            orientation_std_deg: known(options.orientation_std_deg),
+            ..Robot::default()
+        },
+        sensor: Sensor {
+            model: "simulated".to_owned(),
+            profile_std_mm: known(options.profile_std_mm),
+            reference_distance_mm: Some(80.0),
+            unknown: UnknownFields::new(),
+        },
+        target: Target::Ball {
+            radius_mm: options.radius_mm,
+        },
+        mount: options.mount,
+        stations,
+        published: None,
+        truth: Some(Truth {
+            flange_from_sensor: Transform::from_rigid(world.carrier_from_sensor),
+            ball_in_base_mm: world.ball_in_world,
+            unknown: UnknownFields::new(),
+        }),
+        unknown: UnknownFields::new(),
+    }
+}
+
+struct Randoms {
+    path: Random,
+    profile: Random,
+    pose: Random,
+    dirt: Random,
+}
+
+impl Randoms {
+    fn new(seed: u64) -> Self {
+        Self {
+            path: Random::new(seed, stream::PATH),
+            profile: Random::new(seed, stream::PROFILE),
+            pose: Random::new(seed, stream::POSE),
+            dirt: Random::new(seed, stream::DIRT),
+        }
+    }
+}
+
+fn station(
+    options: &SimulationOptions,
+    world: &World,
+    scene: &Scene,
+    station_idx: usize,
+    randoms: &mut Randoms,
+) -> Station {
+    let path = StationPath::new(options, world, station_idx, &mut randoms.path);
+    let captures = (0..options.num_steps)
+        .map(|capture_idx| {
+            let world_from_sensor = path.world_from_sensor(capture_idx);
+            let world_from_carrier = world_from_sensor * world.carrier_from_sensor.inverse();
+            let true_base_from_flange = match options.mount {
+                Mount::OnFlange => world_from_carrier,
+                Mount::Fixed => world_from_carrier.inverse(),
+            };
+            let profile = scene.profile(&world_from_sensor, &mut randoms.profile, &mut randoms.dirt);
+            let is_bad = options.bad_pose_station == Some(station_idx);
+            Capture {
+                base_from_flange: Transform::from_rigid(reported(
+                    &true_base_from_flange,
+                    options,
+                    is_bad,
+                    &mut randoms.pose,
+                )),
+                reading: Reading::Profile(Arc::new(profile)),
+                step_mm: (capture_idx > 0).then_some(path.step_mm),
+                unknown: UnknownFields::new(),
+            }
+        })
+        .collect();
+    Station {
+        label: (station_idx + 1).to_string(),
+        enabled: true,
+        side: SideChoice::Auto,
+        edge: None,
+        captures,
+        unknown: UnknownFields::new(),
+    }
+}
+
+/// The pose that the controller would report: with noise, rounded, and shifted at the bad station.
+fn reported(true_base_from_flange: &Rigid, options: &SimulationOptions, is_bad: bool, random: &mut Random) -> Rigid {
+    let position_error = random.normal3() * options.position_std_mm;
+    let orientation_error = random.normal3() * options.orientation_std_deg.to_radians();
+    let shift = if is_bad {
+        Vec3::new(0.48, -0.64, 0.6) * SimulationOptions::BAD_POSE_MM
+    } else {
+        Vec3::zeros()
+    };
+    let position = true_base_from_flange.translation.vector + position_error + shift;
+    // Without noise the rotation stays as it is, to the bit.
+    let rotation = if options.orientation_std_deg > 0.0 {
+        true_base_from_flange.rotation * so3::exp(orientation_error)
+    } else {
+        true_base_from_flange.rotation
+    };
+    Rigid::from_parts(position.map(|value| rounded(value, options.decimals)).into(), rotation)
+}
+
+#[cfg(test)]
+mod tests;

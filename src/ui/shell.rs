@@ -166,7 +166,8 @@ impl Shell {
 
     fn bars(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, commands: &mut Vec<Command>) {
         let palette = theme::palette(ui);
-        let bar = Frame::new().fill(palette.surface);
+        let surface = Frame::new().fill(palette.surface);
+        let bar = surface.inner_margin(Margin::symmetric(16, 0));
         Panel::top("top bar").exact_size(TOP_HEIGHT).frame(bar).show(ui, |ui| {
             top_bar::show(ui, &self.workbench, &mut self.persisted, actions);
         });
@@ -174,17 +175,16 @@ impl Shell {
             status::show(ui, &self.workbench, self.step, actions, commands);
         });
         if status::notices_shown(&self.workbench, self.step).next().is_some() {
-            let strip = bar.inner_margin(Margin::symmetric(0, 4));
+            let strip = surface.inner_margin(Margin::symmetric(16, 4));
             Panel::bottom("notices").resizable(false).frame(strip).show(ui, |ui| {
                 status::notices(ui, &self.workbench, self.step, commands);
             });
         }
-        Panel::left("rail").resizable(false).exact_size(RAIL_WIDTH).frame(bar).show(ui, |ui| {
+        Panel::left("rail").resizable(false).exact_size(RAIL_WIDTH).frame(surface).show(ui, |ui| {
             rail::show(ui, &self.workbench, &self.selection, self.step, actions);
         });
         if self.persisted.inspector_open && self.workbench.document().is_some() {
-            let frame = bar.inner_margin(Margin::symmetric(16, 0));
-            Panel::right("inspector").resizable(false).exact_size(INSPECTOR_WIDTH).frame(frame).show(ui, |ui| {
+            Panel::right("inspector").resizable(false).exact_size(INSPECTOR_WIDTH).frame(bar).show(ui, |ui| {
                 let mut context = PanelContext {
                     workbench: &self.workbench,
                     selection: &mut self.selection,

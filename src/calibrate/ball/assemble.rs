@@ -18,6 +18,8 @@ const RECOMMENDED_SPAN_DEG: f64 = 40.0;
 const ONE_AXIS_RATIO: f64 = 8.0;
 /// A left-out error this many times the median of the others, and not small in itself, is one to look at.
 const STANDS_OUT_RATIO: f64 = 4.0;
+/// So is its residual, by this factor at least.
+const RESIDUAL_RATIO: f64 = 2.5;
 /// Left-out errors below this are noise whatever their ratio, mm: the resolution of a good arm.
 const STANDS_OUT_MM: f64 = 0.05;
 
@@ -74,7 +76,8 @@ impl Found<'_> {
             let covariance = sensor_block(&unit_covariance) * factor;
             uncertainty(&covariance, &state.flange_from_sensor, self.reference_point(&balls_in_sensor))
         });
-        self.add_shared_warnings(span, &left_out);
+        let in_sample: Vec<f64> = balls_in_base.iter().map(|ball| (ball - state.ball_in_base).norm()).collect();
+        self.add_shared_warnings(span, &left_out, &in_sample);
         let stations = self
             .stations
             .into_iter()
@@ -130,7 +133,7 @@ impl Found<'_> {
         )
     }
 
-    fn add_shared_warnings(&mut self, span_rad: f64, left_out: &[Option<f64>]) {
+    fn add_shared_warnings(&mut self, span_rad: f64, left_out: &[Option<f64>], in_sample: &[f64]) {
         let num_stations = self.stations.len();
         if num_stations < super::super::validation::MIN_STATIONS {
             self.warnings.push(Warning::FewStations {
@@ -157,7 +160,7 @@ impl Found<'_> {
                 num_iterations: self.minimum.num_iterations,
             });
         }
-        if let Some((station, error_mm, typical_mm)) = stands_out(left_out) {
+        if let Some((station, error_mm, typical_mm)) = stands_out(left_out, in_sample) {
             self.warnings.push(Warning::StationStandsOut {
                 label: self.stations[station].station.label.clone(),
                 error_mm,
@@ -179,18 +182,19 @@ fn rms_max(distances: impl Iterator<Item = f64> + Clone) -> RmsMax {
     }
 }
 
-fn stands_out(left_out: &[Option<f64>]) -> Option<(usize, f64, f64)> {
-    let (station, error_mm) = left_out
-        .iter()
-        .enumerate()
-        .filter_map(|(idx, error)| error.map(|error| (idx, error)))
-        .max_by(|a, b| a.1.total_cmp(&b.1))?;
-    let mut others: Vec<f64> = left_out
-        .iter()
-        .enumerate()
-        .filter(|(idx, _)| *idx != station)
-        .filter_map(|(_, error)| *error)
-        .collect();
-    let typical_mm = stats::median(&mut others);
-    (error_mm > STANDS_OUT_MM && error_mm > STANDS_OUT_RATIO * typical_mm).then_some((station, error_mm, typical_mm))
+/// The station with the largest left-out error, if that is far above the others' and its residual is as well: a large
+/// left-out error alone is that of a station which the result hangs on.
+fn stands_out(left_out: &[Option<f64>], in_sample: &[f64]) -> Option<(usize, f64, f64)> {
+    let errors: Vec<f64> = left_out.iter().copied().collect::<Option<_>>()?;
+    let (station, error_mm) = errors.iter().copied().enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let typical_mm = median_of_others(&errors, station);
+    let leads = in_sample[station] > RESIDUAL_RATIO * median_of_others(in_sample, station);
+    (leads && error_mm > STANDS_OUT_MM && error_mm > STANDS_OUT_RATIO * typical_mm)
+        .then_some((station, error_mm, typical_mm))
+}
+
+fn median_of_others(values: &[f64], left_out: usize) -> f64 {
+    let mut others: Vec<f64> =
+        values.iter().enumerate().filter(|(idx, _)| *idx != left_out).map(|(_, value)| *value).collect();
+    stats::median(&mut others)
 }

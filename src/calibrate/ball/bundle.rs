@@ -9,20 +9,16 @@
 
 use crate::calibrate::observation::{CentreObservation, State};
 use crate::calibrate::rotation_start::PoseGeometry;
-use crate::calibrate::solver::{Minimum, minimise};
 use crate::calibrate::{BallProblem, Method, Reading, Solution, SolveError, Station, Warning};
 use crate::fit::ArcFit;
-use crate::geometry::{Mat3, Rigid, Vec3, stats};
+use crate::geometry::{Rigid, stats};
 
 use super::assemble::{Found, StationFacts, first_pose};
-use super::pose_noise::{PoseNoise, marginalised, residual_pull};
+use super::passes::settle;
+use super::pose_noise::station_variance_factor;
 use super::profile_sums::profile_sums;
 use super::{MIN_STATIONS, fixed_point, max_arc};
 
-/// Passes over the points. The start is near, so three or four settle it.
-const MAX_PASSES: usize = 20;
-/// Movements below this (mm, or mm at 100 mm of lever) between passes are the end.
-const SETTLED_MM: f64 = 1e-11;
 /// Noise below this (mm) is rounding; weights are taken as of this noise.
 const LEAST_POINT_STD_MM: f64 = 1e-7;
 
@@ -47,8 +43,9 @@ pub fn solve(problem: &BallProblem) -> Result<Solution, SolveError> {
     let poses = PoseGeometry::new(&poses_of_stations)?;
     let start = start(problem, &mut warnings)?;
     let profiles = used_profiles(&stations, problem.radius_mm);
-    let bundled = bundle(&profiles, problem, start)?;
-    let variance_factor = variance_factor(&bundled, stations.len());
+    let settled = settle(|state| linearised(&profiles, state, problem.radius_mm), &problem.noise, start)?;
+    let variance_factor =
+        station_variance_factor(&settled.observations, &settled.minimum.state, stations.len());
     let facts = stations
         .into_iter()
         .map(|station| StationFacts {
@@ -62,8 +59,8 @@ pub fn solve(problem: &BallProblem) -> Result<Solution, SolveError> {
         method: Method::BallBundle,
         problem,
         stations: facts,
-        observations: bundled.observations,
-        minimum: bundled.minimum,
+        observations: settled.observations,
+        minimum: settled.minimum,
         variance_factor,
         // A station blind along y still knows that the ball is not further off than its radius.
         prior_information: 1.0 / (problem.radius_mm * problem.radius_mm),
@@ -136,53 +133,6 @@ fn used_profiles<'a>(stations: &[&'a Station], ball_radius_mm: f64) -> Vec<UsedP
         .collect()
 }
 
-#[derive(Clone, Debug)]
-struct Bundled {
-    observations: Vec<CentreObservation>,
-    minimum: Minimum,
-}
-
-/// Passes over the points until nothing moves: first with the points' weights alone, then with the pose noise in.
-fn bundle(profiles: &[UsedProfile<'_>], problem: &BallProblem, start: State) -> Result<Bundled, SolveError> {
-    let mut state = start;
-    let mut noise = PoseNoise::stated(&problem.noise);
-    let mut latest = None;
-    for pass in 1..=MAX_PASSES {
-        let by_points = linearised(profiles, &state, problem.radius_mm);
-        let noise_now = match noise {
-            Some(noise) => noise,
-            // The first pass sees the offsets of the start, so the noise is estimated from the second on, and kept from
-            // the fourth so that the passes can settle.
-            None if pass == 1 => PoseNoise {
-                position_std_mm: 0.0,
-                orientation_std_rad: 0.0,
-            },
-            None => PoseNoise::estimated(&by_points, &state),
-        };
-        if pass >= 4 {
-            noise = Some(noise_now);
-        }
-        let observations: Vec<CentreObservation> = by_points
-            .iter()
-            .map(|observation| marginalised(observation, &state, &noise_now))
-            .collect::<Result<_, _>>()?;
-        let mut minimum = minimise(observations.iter(), state)?;
-        let change = state.flange_from_sensor.inverse() * minimum.state.flange_from_sensor;
-        let moved = change.translation.vector.norm()
-            + 100.0 * change.rotation.angle()
-            + (state.ball_in_base - minimum.state.ball_in_base).norm();
-        state = minimum.state;
-        let settled = moved < SETTLED_MM && pass >= 5;
-        minimum.converged &= settled || moved < 1e-6;
-        minimum.num_iterations = pass;
-        latest = Some(Bundled { observations, minimum });
-        if settled {
-            break;
-        }
-    }
-    latest.ok_or(SolveError::Diverged)
-}
-
 fn linearised(profiles: &[UsedProfile<'_>], state: &State, ball_radius_mm: f64) -> Vec<CentreObservation> {
     profiles
         .iter()
@@ -198,28 +148,4 @@ fn linearised(profiles: &[UsedProfile<'_>], state: &State, ball_radius_mm: f64) 
             }
         })
         .collect()
-}
-
-/// By how much the stations scatter more than their stated noise explains, at least 1; `None` with nothing left over.
-///
-/// Errors common to a sweep show between stations only, so whole stations are the sample.
-fn variance_factor(bundled: &Bundled, num_stations: usize) -> Option<f64> {
-    let state = &bundled.minimum.state;
-    let mut chi_square = 0.0;
-    for station in 0..num_stations {
-        let (mut information, mut pull) = (Mat3::zeros(), Vec3::zeros());
-        for observation in bundled.observations.iter().filter(|observation| observation.station == station) {
-            let rotation =
-                (observation.base_from_flange.rotation * state.flange_from_sensor.rotation).to_rotation_matrix();
-            information += rotation.matrix() * observation.information * rotation.matrix().transpose();
-            pull += rotation * residual_pull(observation, state);
-        }
-        let ridge = Mat3::identity() * (1e-12 * information.trace());
-        if let Some(factor) = (information + ridge).cholesky() {
-            chi_square += pull.dot(&factor.solve(&pull));
-        }
-    }
-    let freedom = (3 * num_stations).checked_sub(9).filter(|freedom| *freedom > 0)?;
-    #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 stations")]
-    Some((chi_square / freedom as f64).max(1.0))
 }

@@ -8,6 +8,8 @@ pub mod max_arc;
 pub mod max_arc_step;
 
 mod assemble;
+mod curve;
+mod passes;
 mod pose_noise;
 mod profile_sums;
 mod side;

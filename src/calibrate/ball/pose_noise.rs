@@ -16,6 +16,12 @@ pub(super) struct PoseNoise {
 }
 
 impl PoseNoise {
+    /// A perfect robot.
+    pub const NONE: Self = Self {
+        position_std_mm: 0.0,
+        orientation_std_rad: 0.0,
+    };
+
     /// The noise that the user states, if any.
     pub fn stated(noise: &Noise) -> Option<Self> {
         if noise.position_std_mm.is_none() && noise.orientation_std_rad.is_none() {
@@ -108,7 +114,34 @@ fn chi_square(observations: &[CentreObservation], state: &State, noise: &PoseNoi
 }
 
 /// Half the negative gradient of an observation at the state.
-pub(super) fn residual_pull(observation: &CentreObservation, state: &State) -> Vec3 {
+fn residual_pull(observation: &CentreObservation, state: &State) -> Vec3 {
     let offset = state.ball_in_sensor(&observation.base_from_flange) - observation.centre_in_sensor;
     observation.pull - observation.information * offset
+}
+
+/// By how much the stations scatter more than their weights explain, at least 1; `None` with nothing left over.
+///
+/// Errors common to a sweep show between stations only, so whole stations are the sample.
+pub(super) fn station_variance_factor(
+    observations: &[CentreObservation],
+    state: &State,
+    num_stations: usize,
+) -> Option<f64> {
+    let mut chi_square = 0.0;
+    for station in 0..num_stations {
+        let (mut information, mut pull) = (Mat3::zeros(), Vec3::zeros());
+        for observation in observations.iter().filter(|observation| observation.station == station) {
+            let rotation =
+                (observation.base_from_flange.rotation * state.flange_from_sensor.rotation).to_rotation_matrix();
+            information += rotation.matrix() * observation.information * rotation.matrix().transpose();
+            pull += rotation * residual_pull(observation, state);
+        }
+        let ridge = Mat3::identity() * (1e-12 * information.trace());
+        if let Some(factor) = (information + ridge).cholesky() {
+            chi_square += pull.dot(&factor.solve(&pull));
+        }
+    }
+    let freedom = (3 * num_stations).checked_sub(9).filter(|freedom| *freedom > 0)?;
+    #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 stations")]
+    Some((chi_square / freedom as f64).max(1.0))
 }

@@ -1,14 +1,21 @@
 //! On which side of the laser plane is the ball? One section cannot tell; all stations together can.
 //!
-//! From all orientations and both global signs the sides and the rotation are improved in turn; then single stations
-//! are flipped while the cost falls. From one start alone this sticks in a wrong assignment.
+//! Across the line and along the range a section shows the ball's centre whatever the side, so a solution that ignores y
+//! comes first and tells the sides; both global signs are tried as well. From each the sides and the rotation are
+//! improved in turn, and single stations flipped while the cost falls. From one start alone this sticks.
 
+use crate::calibrate::observation::CentreObservation;
 use crate::calibrate::rotation_start::{PoseGeometry, RotationMinimum, octahedral_rotations};
+use crate::calibrate::solver::minimise;
 use crate::calibrate::{Side, SideChoice};
-use crate::geometry::{Rigid, Vec3};
+use crate::geometry::{Mat3, Rigid, Vec3};
 
 /// A cost below this a station is rounding, mm².
 const ROUNDING: f64 = 1e-16;
+/// Weight of y = 0 ± R/2 beside x and z, which are a hundred times better known.
+const WEIGHT_OF_Y: f64 = 1e-4;
+/// Rotations nearer than this are the same minimum.
+const SAME_MINIMUM_RAD: f64 = 1e-3;
 /// Beyond this many stations every single flip would take longer than a frame; turns of all stations do instead.
 const MAX_SINGLE_FLIPS: usize = 64;
 
@@ -24,6 +31,15 @@ pub(super) struct SideCandidate {
 impl SideCandidate {
     pub fn centre(&self, side: Side) -> Vec3 {
         Vec3::new(self.x_mm, side.sign() * self.size_y_mm, self.z_mm)
+    }
+
+    /// The given side, or that of a predicted y.
+    fn side_of(&self, predicted_y_mm: f64) -> Side {
+        match self.choice {
+            SideChoice::Given(side) => side,
+            SideChoice::Auto if predicted_y_mm < 0.0 => Side::Minus,
+            SideChoice::Auto => Side::Plus,
+        }
     }
 
     const fn is_open(&self) -> bool {
@@ -75,18 +91,10 @@ pub(super) fn resolve_sides(
         let minimum = poses.reduced(&resolver.centres(&sides)).best_minimum();
         resolver.keep_new(&mut finals, Assignment { sides, minimum });
     }
-    let all_fit = finals.iter().any(|assignment| resolver.fits_well(assignment));
-    if candidates.iter().any(SideCandidate::is_open) && !all_fit {
-        let start = finals[0].sides.clone();
-        for rotation in octahedral_rotations() {
-            let minimum = poses.reduced(&resolver.centres(&start)).descend(rotation);
-            resolver.keep_new(
-                &mut finals,
-                Assignment {
-                    sides: start.clone(),
-                    minimum,
-                },
-            );
+    let fits = finals.iter().any(|assignment| resolver.fits_well(assignment));
+    if candidates.iter().any(SideCandidate::is_open) && !fits {
+        for start in resolver.starts_without_y() {
+            resolver.keep_new(&mut finals, start);
         }
     }
     finals.sort_by(|a, b| a.minimum.cost.total_cmp(&b.minimum.cost));
@@ -103,6 +111,50 @@ pub(super) fn resolve_sides(
 impl Resolver<'_> {
     fn centres(&self, sides: &[Side]) -> Vec<Vec3> {
         self.candidates.iter().zip(sides).map(|(candidate, side)| candidate.centre(*side)).collect()
+    }
+
+    /// Assignments told by solutions that hardly look at y.
+    fn starts_without_y(&self) -> Vec<Assignment> {
+        let flat: Vec<Vec3> =
+            self.candidates.iter().map(|candidate| Vec3::new(candidate.x_mm, 0.0, candidate.z_mm)).collect();
+        let reduced = self.poses.reduced(&flat);
+        let mut starts: Vec<RotationMinimum> = Vec::new();
+        for rotation in octahedral_rotations() {
+            let minimum = reduced.descend(rotation);
+            let is_known = |known: &RotationMinimum| {
+                known.flange_from_sensor.angle_to(&minimum.flange_from_sensor) < SAME_MINIMUM_RAD
+            };
+            if !starts.iter().any(is_known) {
+                starts.push(minimum);
+            }
+        }
+        let observations: Vec<CentreObservation> = self
+            .base_from_flange
+            .iter()
+            .zip(&flat)
+            .enumerate()
+            .map(|(idx, (pose, centre))| CentreObservation {
+                information: Mat3::from_diagonal(&Vec3::new(1.0, WEIGHT_OF_Y, 1.0)),
+                ..CentreObservation::point(idx, *pose, *centre)
+            })
+            .collect();
+        starts
+            .iter()
+            .filter_map(|start| minimise(observations.iter(), reduced.state(start.flange_from_sensor)).ok())
+            .map(|found| {
+                let sides: Vec<Side> = self
+                    .candidates
+                    .iter()
+                    .zip(self.base_from_flange)
+                    .map(|(candidate, pose)| candidate.side_of(found.state.ball_in_sensor(pose).y))
+                    .collect();
+                let minimum = self
+                    .poses
+                    .reduced(&self.centres(&sides))
+                    .descend(found.state.flange_from_sensor.rotation);
+                Assignment { sides, minimum }
+            })
+            .collect()
     }
 
     /// Whether the residual is a small part of the sections' distance from the ball's centre: then no other assignment
@@ -134,13 +186,7 @@ impl Resolver<'_> {
                 .candidates
                 .iter()
                 .zip(self.base_from_flange)
-                .zip(&assignment.sides)
-                .map(|((candidate, pose), side)| {
-                    if !candidate.is_open() {
-                        return *side;
-                    }
-                    if state.ball_in_sensor(pose).y < 0.0 { Side::Minus } else { Side::Plus }
-                })
+                .map(|(candidate, pose)| candidate.side_of(state.ball_in_sensor(pose).y))
                 .collect();
             if sides == assignment.sides {
                 break;

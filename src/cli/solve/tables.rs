@@ -142,10 +142,10 @@ fn calibration(out: &mut String, session: &Session, solution: &Solution) {
     };
     let convention = session.robot.pose_convention;
     let translation = solution.flange_from_sensor.translation_mm();
-    let angles = convention.angles_deg_from_rotation(&solution.flange_from_sensor.rotation());
+    let rotation = solution.flange_from_sensor.rotation();
+    let angles = convention.angles_deg_from_rotation(&rotation);
     let uncertainty = solution.uncertainty.as_ref();
     let translation_std = uncertainty.map(|uncertainty| uncertainty.translation_std_mm);
-    let rotation_std = uncertainty.map(|uncertainty| uncertainty.rotation_std_rad.map(f64::to_degrees));
     write!(out, "  {name}: ").ok();
     for axis in 0..3 {
         let std = translation_std.map(|std| std[axis]);
@@ -155,21 +155,16 @@ fn calibration(out: &mut String, session: &Session, solution: &Solution) {
         }
         out.push_str(if axis < 2 { ", " } else { " mm\n" });
     }
-    let worst_rotation_std = rotation_std.map(|std| std.max());
-    let decimals = decimals_for(worst_rotation_std);
-    writeln!(
-        out,
-        "  {:>width$}  {} {}, {} {}, {} {} °{} ({})",
-        "",
-        convention.angle_names[0],
-        fixed(angles[0], decimals),
-        convention.angle_names[1],
-        fixed(angles[1], decimals),
-        convention.angle_names[2],
-        fixed(angles[2], decimals),
-        worst_rotation_std.map_or_else(String::new, |std| format!(" ± {}", fixed(std, decimals))),
-        convention.label,
-        width = name.len()
-    )
-    .ok();
+    let angles_std =
+        uncertainty.map(|known| convention.angles_std_deg(&rotation, &known.rotation_covariance()));
+    write!(out, "  {:>width$}  ", "", width = name.len()).ok();
+    for axis in 0..3 {
+        let std = angles_std.map(|std| std[axis]);
+        write!(out, "{} {}", convention.angle_names[axis], fixed(angles[axis], decimals_for(std))).ok();
+        if let Some(std) = std {
+            write!(out, " ± {}", fixed(std, decimals_for(Some(std)))).ok();
+        }
+        out.push_str(if axis < 2 { ", " } else { " °" });
+    }
+    writeln!(out, " ({})", convention.label).ok();
 }

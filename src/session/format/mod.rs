@@ -160,7 +160,7 @@ fn syntax_error(file: String, text: &str, error: &serde_json::Error) -> SessionE
         let rest = line_text.get(start..).unwrap_or_default();
         match rest.chars().take(CONTEXT_CHARS).collect::<String>() {
             context if context.is_empty() => "the end of the line".to_owned(),
-            context => quoted(&context),
+            context => format!("`{}`", on_one_line(&context)),
         }
     };
     SessionError::Syntax {

@@ -86,7 +86,7 @@ pub(super) fn quoted(text: &str) -> String {
     if short.len() < text.len() {
         short.push('…');
     }
-    format!("\"{}\"", on_one_line(&short))
+    format!("\"{}\"", on_one_line(&short.replace('"', "\\\"")))
 }
 
 /// A number of a compact list as serde's type: whole ones as integers, as people write them.

@@ -256,8 +256,8 @@ fn profile(cursor: &Cursor<'_>, unknown: &mut UnknownFields) -> Result<Profile, 
     let z_mm: Vec<Option<f64>> =
         z_cursor.numbers_or_null(z_expected)?.iter().map(|z| (!z.is_nan()).then_some(*z)).collect();
     Profile::new(x_mm.to_vec(), &z_mm).map_err(|error| match error {
-        ProfileError::LengthMismatch { num_x, num_z } => {
-            z_cursor.refuse_as(format!("{num_z} values"), format!("{num_x}, as many as x_mm has"))
+        ProfileError::LengthMismatch { num_x, .. } => {
+            z_cursor.refuse(format!("a list of {num_x}, as many as x_mm has"))
         }
         ProfileError::OutOfRange { axis, index, value, .. } => {
             let list = if axis == 'x' { &x_cursor } else { &z_cursor };
@@ -327,10 +327,7 @@ fn published(cursor: &Cursor<'_>, num_stations: usize) -> Result<Published, Refu
         let Some(cursor) = object.optional(name) else { return Ok(Vec::new()) };
         let elements = cursor.elements("a list of points, one a station")?;
         if elements.len() != num_stations && !elements.is_empty() {
-            return Err(cursor.refuse_as(
-                format!("{} rows", elements.len()),
-                format!("{num_stations}, one a station"),
-            ));
+            return Err(cursor.refuse(format!("a list of {num_stations}, one a station")));
         }
         elements.iter().map(|element| element.vec3(quantity)).collect()
     };

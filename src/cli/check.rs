@@ -1,0 +1,70 @@
+//! `handeye check`: is this file a session, and is anything odd about it?
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use crate::session::check::{Finding, findings};
+use crate::session::format::{Loaded, load_with_notes};
+use crate::text::check::finding_message;
+
+use super::{EXIT_WRONG_INPUT, fail};
+
+/// Arguments of `handeye check`.
+#[derive(Clone, Debug, clap::Args)]
+pub struct CheckArgs {
+    /// The session file.
+    pub file: PathBuf,
+}
+
+/// Validates a session file and lists what is odd about it. What is odd is no failure: the status is then 0 as well.
+#[must_use]
+pub fn run(args: &CheckArgs) -> ExitCode {
+    match load_with_notes(&args.file) {
+        Ok(loaded) => {
+            // Whoever closed standard output early has seen enough.
+            let _ = io::stdout().write_all(listing(&loaded).as_bytes());
+            ExitCode::SUCCESS
+        }
+        Err(error) => fail(EXIT_WRONG_INPUT, &error),
+    }
+}
+
+/// What `handeye check` prints: the session in one line, then a line a finding.
+#[must_use]
+pub fn listing(loaded: &Loaded) -> String {
+    let Loaded { session, notes } = loaded;
+    let all: Vec<Finding> = notes.iter().cloned().chain(findings(session)).collect();
+    let mut listing = format!(
+        "a valid session: {}, {} stations ({} enabled), {} profiles or points\n",
+        if session.name.is_empty() { "unnamed" } else { session.name.lines().next().unwrap_or_default() },
+        session.stations.len(),
+        session.stations.iter().filter(|station| station.enabled).count(),
+        session.num_captures(),
+    );
+    for finding in &all {
+        listing.push_str(&format!("{}: {}\n", finding.code(), finding_message(finding)));
+    }
+    if all.is_empty() {
+        listing.push_str("nothing odd found\n");
+    }
+    listing
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::format::parse_with_notes;
+
+    #[test]
+    fn the_listing_has_a_line_a_finding() {
+        let json = r#"{"format": "handeye-session", "version": 1, "name": "cell 3",
+            "target": {"kind": "ball", "radius_mm": 15}, "stations": []}"#;
+        let loaded = parse_with_notes(json.as_bytes(), "cell.json").expect("valid");
+        assert_eq!(
+            listing(&loaded),
+            "a valid session: cell 3, 0 stations (0 enabled), 0 profiles or points\n\
+             no-stations: There are no stations yet.\n"
+        );
+    }
+}

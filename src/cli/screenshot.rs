@@ -1,0 +1,62 @@
+//! `handeye screenshot`: a step of the window as a picture, drawn without a display. The pictures in the docs are made so.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Args, ValueEnum};
+
+use crate::ui::{self, Step};
+
+use super::{EXIT_WRONG_INPUT, fail};
+
+/// Arguments of `handeye screenshot`.
+#[derive(Debug, Args)]
+pub struct ScreenshotArgs {
+    /// Session file; without it the start page is drawn
+    #[arg(value_name = "FILE")]
+    pub file: Option<PathBuf>,
+    /// PNG file to write
+    #[arg(long)]
+    pub out: PathBuf,
+    /// Step of the rail
+    #[arg(long, value_enum, default_value_t = StepName::Session)]
+    pub step: StepName,
+    /// Width, pixels
+    #[arg(long, default_value_t = 1440, value_parser = clap::value_parser!(u32).range(640..=4096))]
+    pub width: u32,
+    /// Height, pixels
+    #[arg(long, default_value_t = 900, value_parser = clap::value_parser!(u32).range(480..=4096))]
+    pub height: u32,
+}
+
+/// The steps by their names on the command line.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum StepName {
+    /// The start page, or the session's overview
+    Session,
+    /// Profiles and curves
+    Arcs,
+    /// The pose table
+    Poses,
+    /// Methods side by side
+    Compare,
+}
+
+impl From<StepName> for Step {
+    fn from(name: StepName) -> Self {
+        match name {
+            StepName::Session => Self::Session,
+            StepName::Arcs => Self::Arcs,
+            StepName::Poses => Self::Poses,
+            StepName::Compare => Self::Compare,
+        }
+    }
+}
+
+/// Runs the command.
+pub fn run(args: &ScreenshotArgs) -> ExitCode {
+    match ui::screenshot(args.file.as_deref(), args.step.into(), [args.width, args.height], &args.out) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => fail(EXIT_WRONG_INPUT, &error),
+    }
+}

@@ -1,0 +1,169 @@
+//! What a laser line sees: the ball, and the table below it.
+
+use crate::geometry::{Profile, Rigid, Vec3};
+
+use super::options::Dirt;
+use super::random::Random;
+
+/// Steeper than this, no light comes back to the sensor.
+const MAX_INCIDENCE_DEG: f64 = 75.0;
+/// From here on steep flanks are measured too high where [`Dirt::has_flank_bias`] is on.
+const BIASED_INCIDENCE_DEG: f64 = 50.0;
+/// The bias at the steepest flank that is still seen, mm.
+const FLANK_BIAS_MM: f64 = 0.12;
+/// The part of the points that are spikes.
+const SPIKE_RATIO: f64 = 0.015;
+/// Sizes of the spikes, mm.
+const SPIKE_MM: [f64; 2] = [0.5, 6.0];
+/// The part of single missing points.
+const MISSING_RATIO: f64 = 0.02;
+/// Runs of missing points, and the part of the profile that each takes at most.
+const NUM_HOLES: usize = 2;
+const HOLE_RATIO: f64 = 0.06;
+/// Gap between the ball and the table, in radii: the ball stands on a post.
+const POST_RADII: f64 = 0.8;
+/// Half of the measuring range along z, in radii, about the ball's centre.
+const HALF_RANGE_RADII: f64 = 3.5;
+/// Width of the profile, in radii.
+const WIDTH_RADII: f64 = 3.0;
+
+/// The ball and its table, standing still in their world: the base, or the flange for a fixed sensor.
+#[derive(Clone, Debug)]
+pub(super) struct Scene {
+    pub ball_in_world: Vec3,
+    pub radius_mm: f64,
+    pub num_points: usize,
+    /// +1 where z grows away from the sensor, −1 where it grows towards it.
+    pub range_sign: f64,
+    pub profile_std_mm: f64,
+    pub dirt: Dirt,
+    pub decimals: Option<u8>,
+}
+
+/// One point of the line before noise.
+#[derive(Clone, Copy)]
+struct Hit {
+    z_mm: f64,
+    /// Angle between the surface's normal and the range axis, degrees; `None` off the ball.
+    incidence_deg: Option<f64>,
+}
+
+impl Scene {
+    /// The profile of a sensor standing at `world_from_sensor`.
+    pub fn profile(&self, world_from_sensor: &Rigid, noise: &mut Random, dirt: &mut Random) -> Profile {
+        let ball_in_sensor = world_from_sensor.inverse_transform_point(&self.ball_in_world.into()).coords;
+        let x_mm: Vec<f64> = (0..self.num_points).map(|idx| self.rounded(self.grid_x_mm(idx))).collect();
+        let mut z_mm: Vec<Option<f64>> = x_mm
+            .iter()
+            .map(|x| {
+                // Drawn for every point, so that what one point hits does not shift the noise of the next.
+                let error_mm = self.profile_std_mm * noise.normal();
+                let hit = self.hit(*x, ball_in_sensor, world_from_sensor)?;
+                Some(hit.z_mm + self.flank_bias_mm(hit) + error_mm)
+            })
+            .collect();
+        if self.dirt.has_spikes {
+            add_spikes(&mut z_mm, dirt);
+        }
+        if self.dirt.has_holes {
+            add_holes(&mut z_mm, dirt);
+        }
+        for z in z_mm.iter_mut().flatten() {
+            *z = self.rounded(*z);
+        }
+        checked_profile(x_mm, &z_mm)
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "a profile has far fewer than 2^52 points")]
+    fn grid_x_mm(&self, idx: usize) -> f64 {
+        let part = idx as f64 / (self.num_points - 1) as f64;
+        (part - 0.5) * WIDTH_RADII * self.radius_mm
+    }
+
+    /// Where the ray at `x` along the range axis first meets something.
+    fn hit(&self, x: f64, ball_in_sensor: Vec3, world_from_sensor: &Rigid) -> Option<Hit> {
+        let dx = x - ball_in_sensor.x;
+        let height_squared = self.radius_mm * self.radius_mm - ball_in_sensor.y * ball_in_sensor.y - dx * dx;
+        if height_squared > 0.0 {
+            // The ball stands above the table, so it is met first; of its two sides, the one towards the sensor.
+            let height = height_squared.sqrt();
+            let incidence_deg = (height / self.radius_mm).acos().to_degrees();
+            return (incidence_deg <= MAX_INCIDENCE_DEG).then(|| Hit {
+                z_mm: ball_in_sensor.z - self.range_sign * height,
+                incidence_deg: Some(incidence_deg),
+            });
+        }
+        if !self.dirt.has_table {
+            return None;
+        }
+        let z_mm = self.table_z_mm(x, world_from_sensor)?;
+        ((z_mm - ball_in_sensor.z).abs() <= HALF_RANGE_RADII * self.radius_mm).then_some(Hit {
+            z_mm,
+            incidence_deg: None,
+        })
+    }
+
+    fn table_z_mm(&self, x: f64, world_from_sensor: &Rigid) -> Option<f64> {
+        let table_height_mm = self.ball_in_world.z - (1.0 + POST_RADII) * self.radius_mm;
+        let start = world_from_sensor * nalgebra::Point3::new(x, 0.0, 0.0);
+        let climb = (world_from_sensor.rotation * Vec3::z()).z;
+        let z_mm = (table_height_mm - start.z) / climb;
+        z_mm.is_finite().then_some(z_mm)
+    }
+
+    /// Steep flanks are seen nearer to the sensor than they are: the light that comes back is that of the upper edge.
+    fn flank_bias_mm(&self, hit: Hit) -> f64 {
+        let steepness = hit.incidence_deg.map_or(0.0, |incidence_deg| {
+            ((incidence_deg - BIASED_INCIDENCE_DEG) / (MAX_INCIDENCE_DEG - BIASED_INCIDENCE_DEG)).clamp(0.0, 1.0)
+        });
+        if self.dirt.has_flank_bias { -self.range_sign * FLANK_BIAS_MM * steepness * steepness } else { 0.0 }
+    }
+
+    fn rounded(&self, value: f64) -> f64 {
+        rounded(value, self.decimals)
+    }
+}
+
+/// To so many decimals.
+pub(super) fn rounded(value: f64, decimals: Option<u8>) -> f64 {
+    decimals.map_or(value, |decimals| {
+        let scale = 10.0_f64.powi(i32::from(decimals));
+        (value * scale).round() / scale
+    })
+}
+
+fn add_spikes(z_mm: &mut [Option<f64>], dirt: &mut Random) {
+    for z in z_mm.iter_mut().flatten() {
+        if dirt.unit() < SPIKE_RATIO {
+            let size_mm = SPIKE_MM[0] + (SPIKE_MM[1] - SPIKE_MM[0]) * dirt.unit();
+            *z += size_mm * dirt.signed_unit().signum();
+        }
+    }
+}
+
+#[expect(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "positions in a profile: small, and not negative"
+)]
+fn add_holes(z_mm: &mut [Option<f64>], dirt: &mut Random) {
+    let len = z_mm.len() as f64;
+    for _ in 0..NUM_HOLES {
+        let start = (dirt.unit() * len) as usize;
+        let end = start + (dirt.unit() * HOLE_RATIO * len) as usize;
+        for z in z_mm.iter_mut().take(end).skip(start) {
+            *z = None;
+        }
+    }
+    for z in z_mm {
+        if dirt.unit() < MISSING_RATIO {
+            *z = None;
+        }
+    }
+}
+
+#[expect(clippy::expect_used, reason = "the options' limits keep every point within a profile's")]
+fn checked_profile(x_mm: Vec<f64>, z_mm: &[Option<f64>]) -> Profile {
+    Profile::new(x_mm, z_mm).expect("simulated points are finite and within reach")
+}

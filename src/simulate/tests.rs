@@ -1,0 +1,177 @@
+//! Simulated sessions against their own truth.
+
+use nalgebra::UnitQuaternion;
+
+use super::*;
+use crate::session::format::{parse, to_json};
+
+/// What f64 holds at 800 mm, with a chain of four transforms.
+const EXACT_MM: f64 = 1e-9;
+
+fn small(mount: Mount, z_towards_sensor: bool) -> SimulationOptions {
+    SimulationOptions {
+        num_stations: 6,
+        num_steps: 5,
+        num_points: 120,
+        step_mm: 3.0,
+        travel_off_normal_deg: 4.0,
+        mount,
+        z_towards_sensor,
+        ..SimulationOptions::noise_free()
+    }
+}
+
+/// Calls `check` with every valid point of the session as it lies from the ball's centre, in the ball's world.
+fn for_each_offset(session: &Session, mut check: impl FnMut(Vec3)) {
+    let truth = session.truth.as_ref().expect("simulated");
+    for capture in session.stations.iter().flat_map(|station| &station.captures) {
+        let world_from_carrier = match session.mount {
+            Mount::OnFlange => *capture.base_from_flange.rigid(),
+            Mount::Fixed => capture.base_from_flange.rigid().inverse(),
+        };
+        let world_from_sensor = world_from_carrier * truth.flange_from_sensor.rigid();
+        let Reading::Profile(profile) = &capture.reading else { panic!("a profile") };
+        for (_, x, z) in profile.valid_points() {
+            check((world_from_sensor * nalgebra::Point3::new(x, 0.0, z)).coords - truth.ball_in_base_mm);
+        }
+    }
+}
+
+#[test]
+fn without_noise_every_point_lies_on_the_ball_on_the_side_of_the_sensor() {
+    for mount in [Mount::OnFlange, Mount::Fixed] {
+        for z_towards_sensor in [false, true] {
+            let session = simulate(&small(mount, z_towards_sensor));
+            let mut num_points = 0;
+            for_each_offset(&session, |offset| {
+                num_points += 1;
+                assert!((offset.norm() - 15.0).abs() < EXACT_MM, "{mount:?}: {}", offset.norm());
+                assert!(offset.z > -2.0, "{mount:?}: the sensor looks from above, not at {offset}");
+            });
+            assert!(num_points > 30 * 40, "{mount:?}: only {num_points} points");
+        }
+    }
+}
+
+#[test]
+fn the_default_sweep_starts_on_one_side_of_the_ball_and_ends_on_the_other() {
+    for mount in [Mount::OnFlange, Mount::Fixed] {
+        let options = SimulationOptions { mount, ..SimulationOptions::noise_free() };
+        let world = World::new(&options);
+        let mut random = Random::new(options.seed, stream::PATH);
+        for station_idx in 0..options.num_stations {
+            let path = StationPath::new(&options, &world, station_idx, &mut random);
+            let ball_y_mm = |num_steps| {
+                path.world_from_sensor(num_steps).inverse_transform_point(&world.ball_in_world.into()).y
+            };
+            let (first, last) = (ball_y_mm(0), ball_y_mm(options.num_steps - 1));
+            assert!(first * last < 0.0, "station {station_idx} sweeps from {first} to {last}");
+            // l > 0.5 R means |y| < 0.866 R.
+            assert!(first.abs().max(last.abs()) < 0.866 * options.radius_mm);
+            assert!(path.step_mm * first > 0.0, "positive steps bring a ball at positive y nearer");
+        }
+    }
+}
+
+#[test]
+fn the_steps_are_those_between_the_true_poses() {
+    let session = simulate(&small(Mount::OnFlange, false));
+    for station in &session.stations {
+        assert_eq!(station.captures[0].step_mm, None);
+        for pair in station.captures.windows(2) {
+            let moved = pair[1].base_from_flange.translation_mm() - pair[0].base_from_flange.translation_mm();
+            let step_mm = pair[1].step_mm.expect("a step");
+            assert!((moved.norm() - step_mm.abs()).abs() < EXACT_MM);
+        }
+    }
+}
+
+#[test]
+fn the_first_station_points_straight_down_by_an_exact_half_turn() {
+    let session = simulate(&small(Mount::OnFlange, false));
+    let down = session.stations[0].captures[0].base_from_flange.rotation();
+    let half_turn = UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(0.0, 1.0, 0.0, 0.0));
+    assert!(down.angle_to(&half_turn) < 1e-12);
+}
+
+#[test]
+fn the_same_seed_gives_the_same_session_and_another_seed_another() {
+    let options = SimulationOptions { num_stations: 3, num_steps: 3, dirt: Dirt::all(), ..SimulationOptions::default() };
+    assert_eq!(simulate(&options), simulate(&options));
+    assert_ne!(simulate(&options), simulate(&SimulationOptions { seed: 2, ..options.clone() }));
+}
+
+#[test]
+fn noise_has_the_size_that_was_asked_for() {
+    let options = SimulationOptions {
+        profile_std_mm: 0.05,
+        position_std_mm: 0.0,
+        orientation_std_deg: 0.0,
+        ..SimulationOptions::default()
+    };
+    let (mut sum, mut count) = (0.0, 0.0);
+    for_each_offset(&simulate(&options), |offset| {
+        // Near the top the range axis is the radius but for the tilt; there the noise shows as it is.
+        if offset.norm() > 1.0 {
+            sum += (offset.norm() - options.radius_mm).powi(2);
+            count += 1.0;
+        }
+    });
+    // Averaged over the visible half the radial part is smaller than the noise along z, but not by half.
+    let radial_std_mm = f64::sqrt(sum / count);
+    assert!((0.025..0.05).contains(&radial_std_mm), "{radial_std_mm}");
+}
+
+#[test]
+fn dirt_adds_table_spikes_and_holes_but_leaves_most_of_the_arc() {
+    let clean = SimulationOptions { num_stations: 4, num_steps: 2, num_points: 300, ..SimulationOptions::default() };
+    let dirty = SimulationOptions { dirt: Dirt::all(), ..clean.clone() };
+    let (mut on_ball, mut table, mut spikes) = (0, 0, 0);
+    for_each_offset(&simulate(&dirty), |offset| match offset.norm() - clean.radius_mm {
+        distance if distance.abs() < 0.2 => on_ball += 1,
+        _ if (offset.z + 1.8 * clean.radius_mm).abs() < 0.2 => table += 1,
+        _ => spikes += 1,
+    });
+    assert!(on_ball > 800 && table > 300 && (10..150).contains(&spikes), "{on_ball} {table} {spikes}");
+}
+
+#[test]
+fn a_bad_pose_is_that_of_one_station_only() {
+    let good = small(Mount::OnFlange, false);
+    let bad = SimulationOptions { bad_pose_station: Some(3), ..good.clone() };
+    for (idx, (a, b)) in simulate(&good).stations.iter().zip(&simulate(&bad).stations).enumerate() {
+        let shift = a.captures[0].base_from_flange.translation_mm() - b.captures[0].base_from_flange.translation_mm();
+        let expected = if idx == 3 { SimulationOptions::BAD_POSE_MM } else { 0.0 };
+        assert!((shift.norm() - expected).abs() < EXACT_MM);
+    }
+}
+
+#[test]
+fn wild_options_give_a_session_that_can_be_saved_and_opened() {
+    for wild in [f64::NAN, f64::INFINITY, -1e300, 0.0, 1e300] {
+        for mount in [Mount::OnFlange, Mount::Fixed] {
+            let session = simulate(&SimulationOptions {
+                num_stations: 2,
+                num_steps: 0,
+                num_points: 0,
+                radius_mm: wild,
+                step_mm: wild,
+                section_offset_mm: Some(wild),
+                section_offset_spread: wild,
+                profile_std_mm: wild,
+                position_std_mm: wild,
+                orientation_std_deg: wild,
+                tilt_deg: wild,
+                spin_deg: wild,
+                travel_off_normal_deg: wild,
+                dirt: Dirt::all(),
+                bad_pose_station: Some(usize::MAX),
+                decimals: Some(u8::MAX),
+                mount,
+                ..SimulationOptions::default()
+            });
+            let again = parse(to_json(&session).as_bytes(), "simulated");
+            assert!(again.is_ok(), "{wild}: {again:?}");
+        }
+    }
+}
