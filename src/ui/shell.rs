@@ -159,7 +159,7 @@ impl Shell {
             self.perform(&ctx, action, &mut commands);
         }
         for command in commands {
-            self.apply(command);
+            self.request(command);
         }
         self.apply_looks(&ctx);
     }
@@ -272,7 +272,7 @@ impl Shell {
     }
 
     /// Applies a command; one that puts another document on the bench asks first if changes would be lost.
-    fn apply(&mut self, command: Command) {
+    pub fn request(&mut self, command: Command) {
         let replaces = matches!(command, Command::Open(_) | Command::OpenSample(_) | Command::CloseDocument);
         if replaces && self.workbench.document().is_some_and(crate::app::Document::is_unsaved) {
             self.unsaved_question = Some(Pending::Command(command));
@@ -331,7 +331,7 @@ impl Shell {
 
     fn take_dialog_answer(&mut self) {
         match self.file_dialog.poll() {
-            Some(Answer::Chosen(Purpose::Open, path)) => self.apply(Command::Open(path)),
+            Some(Answer::Chosen(Purpose::Open, path)) => self.request(Command::Open(path)),
             Some(Answer::Chosen(Purpose::Save, path)) => self.workbench.apply(Command::SaveAs(path)),
             Some(Answer::Unavailable(Purpose::Open)) => {
                 self.step = Step::Session;
