@@ -138,7 +138,7 @@ fn empty(ui: &mut Ui, sentence: &str) {
 fn toggles(ui: &mut Ui, model: &CompareModel, shown: &[Method], state: &mut CompareState) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(5.0, 6.0);
-        ui.spacing_mut().button_padding.x = 8.0;
+        ui.spacing_mut().button_padding.x = 6.0;
         for column in &model.columns {
             let method = column.method;
             let is_shown = shown.contains(&method);

@@ -130,7 +130,7 @@ pub fn coordinate(value_mm: f64) -> String {
 /// The legend of the tints: one piece, so that a line never breaks inside it.
 pub fn tint_legend(ui: &mut Ui) {
     /// Size of the ground of one class.
-    const CLASS_SIZE: egui::Vec2 = vec2(30.0, 18.0);
+    const CLASS_SIZE: egui::Vec2 = vec2(28.0, 18.0);
     let color = theme::palette(ui).text_dim;
     let words = |ui: &Ui, text: &str| {
         ui.painter().layout_no_wrap(text.to_owned(), FontId::proportional(theme::SMALL_SIZE), color)
