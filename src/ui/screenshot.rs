@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::sync_channel;
 
-use egui::{Context, Pos2, RawInput, Rect, TexturesDelta, vec2};
+use egui::{Context, Pos2, RawInput, Rect, vec2};
 use image::RgbaImage;
 use thiserror::Error;
 
@@ -53,7 +53,10 @@ pub fn render(session: Option<&Path>, step: Step, size: [u32; 2]) -> Result<Rgba
     let ctx = Context::default();
     let (sender, woken) = sync_channel(1);
     let mut shell = Shell::new(&ctx, Persisted::default());
-    ctx.set_request_repaint_callback(move |_| drop(sender.try_send(())));
+    ctx.set_request_repaint_callback(move |_| {
+        // A full channel already holds the news that there is news.
+        sender.try_send(()).ok();
+    });
     if let Some(path) = session {
         shell.workbench_mut().apply(Command::Open(path.to_owned()));
     }
@@ -92,9 +95,7 @@ impl Frames<'_> {
         };
         let ctx = self.ctx.clone();
         let mut output = ctx.run_ui(input, |ui| shell.ui(ui));
-        let textures: TexturesDelta = std::mem::take(&mut output.textures_delta);
-        self.renderer.update_textures(&textures);
-        self.renderer.free_textures(&textures);
+        self.renderer.update_textures(&mut output.textures_delta);
         output
     }
 

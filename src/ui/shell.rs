@@ -159,14 +159,15 @@ impl Shell {
             self.perform(&ctx, action, &mut commands);
         }
         for command in commands {
-            self.apply(command);
+            self.request(command);
         }
         self.apply_looks(&ctx);
     }
 
     fn bars(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, commands: &mut Vec<Command>) {
         let palette = theme::palette(ui);
-        let bar = Frame::new().fill(palette.surface);
+        let surface = Frame::new().fill(palette.surface);
+        let bar = surface.inner_margin(Margin::symmetric(16, 0));
         Panel::top("top bar").exact_size(TOP_HEIGHT).frame(bar).show(ui, |ui| {
             top_bar::show(ui, &self.workbench, &mut self.persisted, actions);
         });
@@ -174,17 +175,16 @@ impl Shell {
             status::show(ui, &self.workbench, self.step, actions, commands);
         });
         if status::notices_shown(&self.workbench, self.step).next().is_some() {
-            let strip = bar.inner_margin(Margin::symmetric(0, 4));
+            let strip = surface.inner_margin(Margin::symmetric(16, 4));
             Panel::bottom("notices").resizable(false).frame(strip).show(ui, |ui| {
                 status::notices(ui, &self.workbench, self.step, commands);
             });
         }
-        Panel::left("rail").resizable(false).exact_size(RAIL_WIDTH).frame(bar).show(ui, |ui| {
+        Panel::left("rail").resizable(false).exact_size(RAIL_WIDTH).frame(surface).show(ui, |ui| {
             rail::show(ui, &self.workbench, &self.selection, self.step, actions);
         });
         if self.persisted.inspector_open && self.workbench.document().is_some() {
-            let frame = bar.inner_margin(Margin::symmetric(16, 0));
-            Panel::right("inspector").resizable(false).exact_size(INSPECTOR_WIDTH).frame(frame).show(ui, |ui| {
+            Panel::right("inspector").resizable(false).exact_size(INSPECTOR_WIDTH).frame(bar).show(ui, |ui| {
                 let mut context = PanelContext {
                     workbench: &self.workbench,
                     selection: &mut self.selection,
@@ -272,7 +272,7 @@ impl Shell {
     }
 
     /// Applies a command; one that puts another document on the bench asks first if changes would be lost.
-    fn apply(&mut self, command: Command) {
+    pub fn request(&mut self, command: Command) {
         let replaces = matches!(command, Command::Open(_) | Command::OpenSample(_) | Command::CloseDocument);
         if replaces && self.workbench.document().is_some_and(crate::app::Document::is_unsaved) {
             self.unsaved_question = Some(Pending::Command(command));
@@ -331,7 +331,7 @@ impl Shell {
 
     fn take_dialog_answer(&mut self) {
         match self.file_dialog.poll() {
-            Some(Answer::Chosen(Purpose::Open, path)) => self.apply(Command::Open(path)),
+            Some(Answer::Chosen(Purpose::Open, path)) => self.request(Command::Open(path)),
             Some(Answer::Chosen(Purpose::Save, path)) => self.workbench.apply(Command::SaveAs(path)),
             Some(Answer::Unavailable(Purpose::Open)) => {
                 self.step = Step::Session;

@@ -3,7 +3,7 @@
 //! It fills the triangles that egui tessellates, with premultiplied colours blended in gamma space as the window's
 //! renderer does. Paint callbacks are skipped; the window uses none.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use egui::epaint::{ClippedPrimitive, ImageDelta, Primitive, Vertex};
 use egui::{Color32, ImageData, Rect, TextureFilter, TextureId, TexturesDelta};
@@ -61,24 +61,22 @@ impl Texture {
 #[derive(Default)]
 pub struct SoftwareRenderer {
     textures: HashMap<TextureId, Texture>,
+    to_free: HashSet<TextureId>,
 }
 
 impl SoftwareRenderer {
-    /// Takes over new and changed textures; before painting.
-    pub fn update_textures(&mut self, delta: &TexturesDelta) {
-        for (id, changes) in &delta.set {
-            let texture = self.textures.entry(*id).or_default();
-            for change in changes {
+    /// Takes over new and changed textures, and forgets those that the frame before still needed.
+    pub fn update_textures(&mut self, delta: &mut TexturesDelta) {
+        for id in self.to_free.drain() {
+            self.textures.remove(&id);
+        }
+        for (id, changes) in delta.set.drain() {
+            let texture = self.textures.entry(id).or_default();
+            for change in &changes {
                 texture.update(change);
             }
         }
-    }
-
-    /// Forgets textures no longer needed; after painting.
-    pub fn free_textures(&mut self, delta: &TexturesDelta) {
-        for id in &delta.free {
-            self.textures.remove(id);
-        }
+        self.to_free.extend(delta.free.drain());
     }
 
     /// Paints tessellated shapes over a transparent ground of `size_px` pixels.

@@ -15,7 +15,6 @@ const BAR_WIDTH: f32 = 160.0;
 /// Draws the line.
 pub fn show(ui: &mut Ui, workbench: &Workbench, step: Step, actions: &mut Vec<Action>, commands: &mut Vec<Command>) {
     ui.horizontal_centered(|ui| {
-        ui.add_space(8.0);
         if let Some((label, action)) = next(workbench, step) {
             ui.label(words::NEXT);
             ui.add_space(4.0);
@@ -24,7 +23,6 @@ pub fn show(ui: &mut Ui, workbench: &Workbench, step: Step, actions: &mut Vec<Ac
             }
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            ui.add_space(8.0);
             progress_or_summary(ui, workbench, commands);
         });
     });
@@ -83,10 +81,8 @@ pub fn notices(ui: &mut Ui, workbench: &Workbench, step: Step, commands: &mut Ve
             NoticeKind::Error => ("✖", palette.bad),
         };
         ui.horizontal(|ui| {
-            ui.add_space(8.0);
             ui.label(RichText::new(mark).color(color));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                ui.add_space(8.0);
                 if widgets::symbol_button(ui, "×", words::DISMISS).clicked() {
                     commands.push(Command::DismissNotice(notice.id));
                 }

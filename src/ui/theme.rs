@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use egui::{Color32, CornerRadius, FontDefinitions, FontFamily, FontId, Margin, RichText, Stroke, TextStyle, Theme, vec2};
+use egui::{Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, RichText, Stroke, TextStyle, Theme, vec2};
 use egui_plot::MarkerShape;
 
 use crate::calibrate::{Method, Verdict};
@@ -19,7 +19,7 @@ pub const GAP: f32 = 12.0;
 /// Size of small text, points.
 pub const SMALL_SIZE: f32 = 11.5;
 /// Size of ordinary text, points.
-pub const BODY_SIZE: f32 = 13.5;
+pub const BODY_SIZE: f32 = 13.0;
 /// Size of headings, points.
 pub const HEADING_SIZE: f32 = 18.0;
 
@@ -214,7 +214,7 @@ pub fn number_font() -> FontId {
     FontId::new(NUMBER_SIZE, number_family())
 }
 
-/// Between small and ordinary text, so that figures of the wider number font look as large as the text beside them.
+/// A little smaller than ordinary text: figures have no descenders and so look larger than letters.
 const NUMBER_SIZE: f32 = 12.5;
 
 /// Sets fonts, both themes' visuals and the spacing of a context.
@@ -226,19 +226,21 @@ pub fn install(ctx: &egui::Context) {
     }
 }
 
+/// Inter, subset and with tabular figures as its only figures; see `assets/fonts/subset.py`.
+const REGULAR: &[u8] = include_bytes!("../../assets/fonts/Inter-Regular.ttf");
+const SEMIBOLD: &[u8] = include_bytes!("../../assets/fonts/Inter-SemiBold.ttf");
+
 fn fonts() -> FontDefinitions {
     let mut fonts = FontDefinitions::default();
-    // Arrows, ticks and geometric shapes stand in Hack only, so it backs up the text font.
-    let text_fonts: Vec<String> = ["Ubuntu-Light", "Hack", "NotoEmoji-Regular", "emoji-icon-font"].map(str::to_owned).into();
-    let number_fonts: Vec<String> = ["Hack", "Ubuntu-Light", "NotoEmoji-Regular", "emoji-icon-font"].map(str::to_owned).into();
-    fonts.families.insert(FontFamily::Proportional, text_fonts.clone());
-    fonts.families.insert(strong_family(), text_fonts);
-    fonts.families.insert(FontFamily::Monospace, number_fonts.clone());
-    fonts.families.insert(number_family(), number_fonts);
-    for data in fonts.font_data.values_mut() {
-        // Fractional glyph positions blur small text on ordinary screens less than whole ones would space it badly.
-        Arc::make_mut(data).tweak.hinting = Some(true);
+    for (name, bytes) in [("Inter", REGULAR), ("Inter SemiBold", SEMIBOLD)] {
+        fonts.font_data.insert(name.to_owned(), Arc::new(FontData::from_static(bytes)));
     }
+    // Ticks, folding triangles and emoji stand in none of the first, so the others back it up.
+    let family = |first: &str| [first, "Ubuntu-Light", "Hack", "NotoEmoji-Regular", "emoji-icon-font"].map(str::to_owned).into();
+    fonts.families.insert(FontFamily::Proportional, family("Inter"));
+    fonts.families.insert(number_family(), family("Inter"));
+    fonts.families.insert(strong_family(), family("Inter SemiBold"));
+    fonts.families.insert(FontFamily::Monospace, family("Hack"));
     fonts
 }
 

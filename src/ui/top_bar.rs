@@ -1,6 +1,6 @@
 //! The bar at the top: menus, the document's title, convention and units, undo and redo.
 
-use egui::{Align, Align2, Button, Layout, MenuBar, TextStyle, Ui, containers::menu::MenuButton, vec2};
+use egui::{Align, Align2, Button, Layout, MenuBar, TextStyle, Ui, UiBuilder, containers::menu::MenuButton, vec2};
 
 use crate::app::Workbench;
 use crate::session::samples;
@@ -17,20 +17,18 @@ const SCALES: [f32; 6] = [0.8, 0.9, 1.0, 1.25, 1.5, 2.0];
 /// Draws the bar.
 pub fn show(ui: &mut Ui, workbench: &Workbench, persisted: &mut Persisted, actions: &mut Vec<Action>) {
     let full = ui.max_rect();
-    ui.horizontal_centered(|ui| {
-        ui.add_space(8.0);
-        ui.label(theme::strong(words::PROGRAM));
-        ui.add_space(8.0);
-        MenuBar::new().ui(ui, |ui| menus(ui, workbench, persisted, actions));
-        let left = ui.cursor().left();
-        let right = ui
-            .with_layout(Layout::right_to_left(Align::Center), |ui| {
-                right_side(ui, workbench, actions);
-                ui.cursor().right()
-            })
-            .inner;
-        title(ui, workbench, full, left..right);
+    let child = |layout| UiBuilder::new().max_rect(full).layout(layout);
+    let mut right_ui = ui.new_child(child(Layout::right_to_left(Align::Center)));
+    let right = right_side(&mut right_ui, workbench, actions);
+    let mut left_ui = ui.new_child(child(Layout::left_to_right(Align::Center)));
+    left_ui.label(theme::strong(words::PROGRAM));
+    left_ui.add_space(8.0);
+    // The menu bar fills what it is given; it says itself where its last button ends.
+    let left = MenuBar::new().ui(&mut left_ui, |ui| {
+        menus(ui, workbench, persisted, actions);
+        ui.cursor().left()
     });
+    title(ui, workbench, full, left.inner..right);
 }
 
 fn menus(ui: &mut Ui, workbench: &Workbench, persisted: &mut Persisted, actions: &mut Vec<Action>) {
@@ -91,9 +89,8 @@ fn item(ui: &mut Ui, workbench: &Workbench, action: Action, actions: &mut Vec<Ac
     }
 }
 
-/// From right to left, as the layout runs.
-fn right_side(ui: &mut Ui, workbench: &Workbench, actions: &mut Vec<Action>) {
-    ui.add_space(8.0);
+/// From right to left, as the layout runs; answers where it ends at the left.
+fn right_side(ui: &mut Ui, workbench: &Workbench, actions: &mut Vec<Action>) -> f32 {
     for (action, name) in [(Action::Redo, words::REDO), (Action::Undo, words::UNDO)] {
         let refusal = action.refusal(workbench);
         let response = ui.add_enabled(refusal.is_none(), Button::new(name));
@@ -110,6 +107,7 @@ fn right_side(ui: &mut Ui, workbench: &Workbench, actions: &mut Vec<Action>) {
         widgets::chip(ui, words::UNITS, words::UNITS_HINT);
         widgets::chip(ui, convention.label, &words::convention_hint(convention.formula));
     }
+    ui.cursor().right()
 }
 
 /// The document's title in the middle of the window, or as near to it as the room between menus and chips allows.

@@ -157,7 +157,7 @@ pub const fn transform_name(mount: Mount) -> &'static str {
 }
 
 /// Row of the inspector.
-pub const FLANGE_POSITION: &str = "flange x y z";
+pub const FLANGE_POSITION: &str = "flange";
 /// Row of the inspector.
 pub const SIDE_OF_BALL: &str = "side of the ball";
 /// Row of the inspector.

@@ -17,6 +17,8 @@ pub const OPEN_ANOTHER: &str = "Open another session";
 pub const PATH: &str = "Session file path";
 /// Hint inside the empty path field.
 pub const PATH_HINT: &str = "/path/to/session.json";
+/// Button that shows the system's file dialog.
+pub const CHOOSE_FILE: &str = "Choose a file…";
 /// Button beside the path field.
 pub const OPEN_PATH: &str = "Open";
 /// Hint below.

@@ -1,6 +1,6 @@
 //! The inspector's sections, one below the other.
 
-use egui::{Align, ComboBox, Grid, Layout, RichText, ScrollArea, Ui};
+use egui::{Align, ComboBox, Layout, RichText, ScrollArea, Sense, Stroke, Ui, UiBuilder, vec2};
 
 use crate::app::{Document, Results};
 use crate::calibrate::{self, Method, Solution, StationSolution};
@@ -8,7 +8,7 @@ use crate::fit::ArcFit;
 use crate::session::Reading;
 use crate::text::methods::method_short_name;
 use crate::text::shell as words;
-use crate::ui::widgets::{fixed, number_text, signed, value_row};
+use crate::ui::widgets::{fixed, number_text, signed, split_row, value_row};
 use crate::ui::{PanelContext, theme};
 
 use super::{findings, model};
@@ -172,38 +172,43 @@ fn solution_section(ui: &mut Ui, document: &Document, solution: &Solution) {
 }
 
 fn matrix(ui: &mut Ui, solution: &Solution) {
-    let width = (ui.available_width() - 4.0) / 4.0;
     let exact = solution.flange_from_sensor.matrix();
-    Grid::new("matrix").spacing([0.0, 0.0]).min_row_height(theme::ROW_HEIGHT).show(ui, |ui| {
-        for (row, cells) in model::matrix_cells(solution).into_iter().enumerate() {
-            for (column, cell) in cells.into_iter().enumerate() {
-                ui.allocate_ui_with_layout(
-                    egui::vec2(width, theme::ROW_HEIGHT),
-                    Layout::right_to_left(Align::Center),
-                    |ui| {
-                        ui.set_min_width(width);
-                        ui.label(number_text(cell)).on_hover_text(exact[(row, column)].to_string());
-                    },
-                );
-            }
-            ui.end_row();
+    let hairline = Stroke::new(1.0, theme::palette(ui).hairline);
+    for (row, cells) in model::matrix_cells(solution).into_iter().enumerate() {
+        let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), theme::ROW_HEIGHT), Sense::hover());
+        ui.painter().hline(rect.x_range(), rect.bottom(), hairline);
+        let width = rect.width() / 4.0;
+        for ((column, cell), right) in cells.into_iter().enumerate().zip([1.0, 2.0, 3.0, 4.0]) {
+            let min = egui::pos2(rect.left() + width * (right - 1.0), rect.top());
+            let layout = Layout::right_to_left(Align::Center);
+            let inside = egui::Rect::from_min_size(min, vec2(width - 4.0, rect.height()));
+            let mut ui = ui.new_child(UiBuilder::new().max_rect(inside).layout(layout));
+            ui.label(number_text(cell)).on_hover_text(exact[(row, column)].to_string());
         }
-    });
+    }
 }
 
-/// Three figures with their unit, the unit in a dimmer tone.
+/// Width of one of three figures in a row, points: room for seven digits, sign and point.
+const FIGURE_WIDTH: f32 = 64.0;
+/// Width of a row's unit, points.
+const UNIT_WIDTH: f32 = 28.0;
+
+/// Three figures with their unit, each right-aligned in a column of its own, the unit in a dimmer tone.
 fn triple_row(ui: &mut Ui, label: &str, values: [String; 3], unit: &str) {
-    ui.horizontal(|ui| {
-        ui.set_min_height(theme::ROW_HEIGHT);
-        ui.label(theme::dim(ui, label));
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            ui.spacing_mut().item_spacing.x = 4.0;
-            ui.allocate_ui_with_layout(egui::vec2(20.0, theme::ROW_HEIGHT), Layout::left_to_right(Align::Center), |ui| {
-                ui.set_min_width(20.0);
-                ui.label(theme::dim(ui, unit));
-            });
-            ui.label(number_text(values.join("  ")));
+    split_row(ui, label, |ui| {
+        ui.spacing_mut().item_spacing.x = 0.0;
+        let cell = |width| egui::vec2(width, theme::ROW_HEIGHT);
+        ui.allocate_ui_with_layout(cell(UNIT_WIDTH), Layout::left_to_right(Align::Center), |ui| {
+            ui.set_min_width(UNIT_WIDTH);
+            ui.add_space(4.0);
+            ui.label(theme::dim(ui, unit));
         });
+        for value in values.into_iter().rev() {
+            ui.allocate_ui_with_layout(cell(FIGURE_WIDTH), Layout::right_to_left(Align::Center), |ui| {
+                ui.set_min_width(FIGURE_WIDTH);
+                ui.label(number_text(value));
+            });
+        }
     });
 }
 

@@ -1,10 +1,12 @@
 //! Data of the pose table, built without egui.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::app::Results;
 use crate::calibrate::{self, Method, Warning};
 use crate::session::Session;
+use crate::session::check::{self, Finding};
+use crate::text::finding_message;
 use crate::text::poses as words;
 use crate::text::warnings::warning_message;
 
@@ -94,6 +96,22 @@ pub fn num_refused(session: &Session, results: &Results) -> usize {
             )
         })
         .count()
+}
+
+/// What the check of a session says of single stations before anything is solved, by their labels. Empty profiles and
+/// odd steps are left to the arcs and the solver, which say more about them.
+#[must_use]
+pub fn checks(session: &Session) -> BTreeMap<String, Vec<String>> {
+    let mut checks: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for finding in check::findings(session) {
+        if matches!(finding, Finding::EmptyProfile { .. } | Finding::StepDiffersFromPose { .. }) {
+            continue;
+        }
+        if let Some(label) = finding.station_label() {
+            checks.entry(label.to_owned()).or_default().push(finding_message(&finding));
+        }
+    }
+    checks
 }
 
 /// What is the matter with a station: refused profiles, and the method's warnings about it.

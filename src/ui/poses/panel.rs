@@ -1,11 +1,11 @@
 //! The pose table.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
-use egui::{Align, Key, Layout, Modifiers, RichText, Sense, Ui};
+use egui::{Key, Modifiers, RichText, Sense, Ui, vec2};
 use egui_extras::{Column, TableRow};
 
-use crate::app::{Command, Document, Results};
+use crate::app::{Command, Document};
 use crate::text::poses as words;
 use crate::ui::widgets::tables::{faded_number_cell, head, number_cell, number_column, number_head, table};
 use crate::ui::widgets::{card_with_height, fixed, named_checkbox, symbol_button};
@@ -18,15 +18,28 @@ const POSITION_DECIMALS: usize = 3;
 /// Decimals of an angle in degrees: what controllers report.
 const ANGLE_DECIMALS: usize = 3;
 
-/// What is unfolded.
+/// What is unfolded, and what the check of the session says of its stations.
 #[derive(Debug, Default)]
 pub struct PosesState {
     unfolded: BTreeSet<usize>,
+    checks: BTreeMap<String, Vec<String>>,
+    checked_revision: Option<u64>,
+}
+
+impl PosesState {
+    /// Checks the session anew if it has changed.
+    fn check(&mut self, document: &Document) {
+        if self.checked_revision != Some(document.revision) {
+            self.checked_revision = Some(document.revision);
+            self.checks = model::checks(&document.session);
+        }
+    }
 }
 
 /// Draws the step.
 pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut PosesState) {
     let Some(document) = context.workbench.document() else { return };
+    state.check(document);
     let num_stations = document.session.stations.len();
     let num_enabled = document.session.stations.iter().filter(|station| station.enabled).count();
     let rows = model::rows(&document.session, &state.unfolded);
@@ -40,7 +53,10 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut PosesState)
         height,
         |ui| {
             let label = if is_all_unfolded { words::FOLD_ALL } else { words::UNFOLD_ALL };
-            toggle_all = ui.small_button(label).clicked();
+            let button = egui::Button::new(RichText::new(label).small()).min_size(vec2(0.0, theme::ROW_HEIGHT));
+            ui.spacing_mut().interact_size.y = theme::ROW_HEIGHT;
+            ui.spacing_mut().button_padding = vec2(8.0, 2.0);
+            toggle_all = ui.add(button).clicked();
             ui.label(theme::dim(ui, words::usage(num_enabled, num_stations)));
         },
         |ui| {
@@ -99,15 +115,17 @@ fn show_table(
     moved_to: Option<usize>,
 ) {
     let angle_names = document.session.robot.pose_convention.angle_names;
+    // Cells touch, so that the hairlines between rows run through.
+    ui.spacing_mut().item_spacing.x = 0.0;
     let mut builder = table(ui, "poses")
         .sense(Sense::click())
-        .column(Column::exact(36.0))
-        .column(Column::exact(24.0))
+        .column(Column::exact(44.0))
+        .column(Column::exact(28.0))
         .column(Column::initial(96.0).at_least(56.0).clip(true))
         .column(Column::exact(48.0))
         .columns(number_column(64.0), 6)
-        .column(Column::exact(72.0))
-        .column(Column::exact(64.0));
+        .column(Column::exact(80.0))
+        .column(Column::exact(72.0));
     if let Some(row_idx) = moved_to {
         builder = builder.scroll_to_row(row_idx, None);
     }
@@ -129,6 +147,7 @@ fn show_table(
         .body(|body| {
             body.rows(theme::ROW_HEIGHT, rows.len(), |mut table_row| {
                 let Some(&row) = rows.get(table_row.index()) else { return };
+                table_row.set_overline(true);
                 table_row.set_selected(is_selected(context, row));
                 match row {
                     Row::Station(station_idx) => show_station(&mut table_row, context, document, state, station_idx),
@@ -185,7 +204,11 @@ fn show_station(
     row.col(|ui| {
         ui.add_space(12.0);
         if station.enabled {
-            check_mark(ui, context.workbench.results(), document, context.selection.method, station_idx);
+            let mut findings = state.checks.get(&station.label).cloned().unwrap_or_default();
+            if let Some(results) = context.workbench.results() {
+                findings.extend(model::findings(&document.session, results, context.selection.method, station_idx));
+            }
+            check_mark(ui, &findings);
         } else {
             ui.label(theme::dim(ui, "–")).on_hover_text(words::LEFT_OUT);
         }
@@ -234,22 +257,12 @@ fn pose_cells(row: &mut TableRow<'_, '_>, document: &Document, station_idx: usiz
     }
 }
 
-fn check_mark(
-    ui: &mut Ui,
-    results: Option<&Results>,
-    document: &Document,
-    method: crate::calibrate::Method,
-    station_idx: usize,
-) {
-    let Some(results) = results else { return };
+fn check_mark(ui: &mut Ui, findings: &[String]) {
     let palette = theme::palette(ui);
-    let findings = model::findings(&document.session, results, method, station_idx);
     if findings.is_empty() {
         ui.label(RichText::new("✔").color(palette.good)).on_hover_text(words::FINE);
     } else {
-        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-            ui.label(RichText::new(format!("{} !", findings.len())).color(palette.warn))
-                .on_hover_text(findings.join("\n"));
-        });
+        let text = RichText::new(format!("{} !", findings.len())).color(palette.warn);
+        ui.label(text).on_hover_text(findings.join("\n"));
     }
 }

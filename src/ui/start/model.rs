@@ -1,9 +1,14 @@
 //! What the start page knows of the samples: their sizes and a picture, read in the background.
 
-use crate::session::{self, Reading, Session, samples};
+use std::sync::Arc;
+
+use crate::geometry::Profile;
+use crate::session::{self, Reading, Session, Station, samples};
 
 /// Points drawn in a sample's picture; more would not be seen.
-const MAX_PICTURE_POINTS: usize = 240;
+const MAX_PICTURE_POINTS: usize = 160;
+/// Profiles drawn one behind the other.
+const MAX_PICTURE_PROFILES: usize = 5;
 
 /// A sample as its card shows it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -28,7 +33,7 @@ pub fn preview_samples() -> Vec<Option<SamplePreview>> {
         .collect()
 }
 
-/// The preview of a session: the profiles of its first station with any, or its reduced points.
+/// The preview of a session: profiles of its first station with any, or its reduced points.
 #[must_use]
 pub fn preview(session: &Session) -> SamplePreview {
     let readings = || session.stations.iter().flat_map(|station| &station.captures).map(|capture| &capture.reading);
@@ -40,7 +45,7 @@ pub fn preview(session: &Session) -> SamplePreview {
         });
         vec![points.collect()]
     } else {
-        middle_profiles(session)
+        some_profiles(session)
     };
     SamplePreview {
         num_stations: session.stations.len(),
@@ -50,20 +55,25 @@ pub fn preview(session: &Session) -> SamplePreview {
     }
 }
 
-/// A profile from the middle of the first station's sweep.
-fn middle_profiles(session: &Session) -> Vec<Vec<[f64; 2]>> {
-    let profiles = session.stations.iter().map(|station| {
-        let profiles: Vec<_> = station
-            .captures
-            .iter()
-            .filter_map(|capture| match &capture.reading {
-                Reading::Profile(profile) => Some(profile),
+/// Some profiles of the first station with any, evenly over its sweep.
+fn some_profiles(session: &Session) -> Vec<Vec<[f64; 2]>> {
+    let profiles_of = |station: &Station| -> Vec<Arc<Profile>> {
+        let readings = station.captures.iter().map(|capture| &capture.reading);
+        readings
+            .filter_map(|reading| match reading {
+                Reading::Profile(profile) => Some(Arc::clone(profile)),
                 Reading::Point(_) => None,
             })
-            .collect();
-        profiles.get(profiles.len() / 2).copied()
-    });
-    let Some(profile) = profiles.flatten().next() else { return Vec::new() };
+            .collect()
+    };
+    let Some(profiles) = session.stations.iter().map(profiles_of).find(|profiles| !profiles.is_empty()) else {
+        return Vec::new();
+    };
+    let stride = profiles.len().div_ceil(MAX_PICTURE_PROFILES);
+    profiles.iter().step_by(stride).map(|profile| picture_points(profile)).collect()
+}
+
+fn picture_points(profile: &Profile) -> Vec<[f64; 2]> {
     let stride = profile.len().div_ceil(MAX_PICTURE_POINTS).max(1);
-    vec![profile.valid_points().step_by(stride).map(|(_, x, z)| [x, z]).collect()]
+    profile.valid_points().step_by(stride).map(|(_, x, z)| [x, z]).collect()
 }

@@ -1,12 +1,12 @@
 //! The small pictures on the samples' cards, drawn from the samples' own data.
 
-use egui::{Color32, Painter, Pos2, Rect, Stroke, pos2, vec2};
+use egui::{Painter, Pos2, Rect, Stroke, vec2};
 
 use crate::ui::theme::{self, Palette};
 
 use super::model::SamplePreview;
 
-/// Draws a sample's picture: its profile in true scale with the laser above, or its reduced points.
+/// Draws a sample's picture: its profiles in true scale, or its reduced points.
 pub fn picture(painter: &Painter, rect: Rect, palette: &Palette, preview: Option<&SamplePreview>) {
     painter.rect_filled(rect, 0.0, palette.canvas);
     let Some(preview) = preview else { return };
@@ -15,20 +15,21 @@ pub fn picture(painter: &Painter, rect: Rect, palette: &Palette, preview: Option
     if preview.is_points_only {
         paint_points(painter, &view, palette, &points);
     } else {
-        paint_profile(painter, rect, &view, palette, &points);
+        paint_profiles(painter, &view, palette, &preview.strokes);
     }
 }
 
-fn paint_profile(painter: &Painter, rect: Rect, view: &View, palette: &Palette, points: &[[f64; 2]]) {
-    // The fan of laser light, faint, from above the picture to the ends of the profile.
-    if let (Some(first), Some(last)) = (points.first(), points.last()) {
-        let source = pos2(rect.center().x, rect.top());
-        let fan = vec![source, view.map(*first), view.map(*last)];
-        let light = Color32::from_rgba_unmultiplied(palette.bad.r(), palette.bad.g(), palette.bad.b(), 16);
-        painter.add(egui::Shape::convex_polygon(fan, light, Stroke::NONE));
-    }
-    for &point in points {
-        painter.circle_filled(view.map(point), 1.2, theme::INLIER);
+/// The profile in the middle of the sweep in full colour, the others faint behind it.
+fn paint_profiles(painter: &Painter, view: &View, palette: &Palette, strokes: &[Vec<[f64; 2]>]) {
+    let middle_idx = strokes.len() / 2;
+    let faint = theme::INLIER.lerp_to_gamma(palette.canvas, 0.72);
+    let mut order: Vec<usize> = (0..strokes.len()).filter(|idx| *idx != middle_idx).collect();
+    order.push(middle_idx);
+    for idx in order {
+        let (color, radius) = if idx == middle_idx { (theme::INLIER, 1.3) } else { (faint, 0.9) };
+        for &point in strokes.get(idx).into_iter().flatten() {
+            painter.circle_filled(view.map(point), radius, color);
+        }
     }
 }
 

@@ -77,7 +77,9 @@ pub fn show(
             overview::show(ui, document);
             ui.add_space(theme::GAP);
             open_card(ui, words::OPEN_ANOTHER, context, state, recent_files, actions);
-            ui.add_space(theme::GAP);
+            ui.add_space(20.0);
+            ui.label(theme::strong(words::SAMPLES));
+            ui.add_space(4.0);
             samples_grid(ui, context, state);
         } else {
             let margin = ((ui.available_width() - MAX_PAGE_WIDTH) / 2.0).max(0.0);
@@ -126,7 +128,7 @@ fn path_row(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut StartState,
     ui.horizontal(|ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let is_first = context.workbench.document().is_none();
-            let open = if is_first { primary_button(ui, shell_words::OPEN) } else { ui.button(shell_words::OPEN) };
+            let open = if is_first { primary_button(ui, words::CHOOSE_FILE) } else { ui.button(words::CHOOSE_FILE) };
             if open.clicked() {
                 actions.push(Action::Open);
             }

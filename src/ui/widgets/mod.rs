@@ -7,4 +7,4 @@ pub mod tables;
 
 pub use card::{card, card_with_height, chip, heading_row};
 pub use controls::{named_checkbox, primary_button, symbol_button};
-pub use number::{fixed, number, number_text, signed, value_row};
+pub use number::{fixed, number, number_text, signed, split_row, value_row};

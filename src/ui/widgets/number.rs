@@ -1,6 +1,6 @@
 //! Numbers: tabular figures, fixed decimals, the true minus sign, right-aligned.
 
-use egui::{Align, Layout, Response, RichText, Ui};
+use egui::{Align, Layout, Response, RichText, Sense, Ui, UiBuilder, vec2};
 
 use crate::ui::theme;
 
@@ -35,19 +35,24 @@ pub fn number_text(text: impl Into<String>) -> RichText {
 pub fn number(ui: &mut Ui, text: impl Into<String>) -> Response {
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         ui.add_space(4.0);
-        ui.label(number_text(text))
+        // Set, so that a selected row does not recolour it.
+        ui.label(number_text(text).color(theme::palette(ui).text))
     })
     .inner
 }
 
 /// A row of a list of figures: a dim label at the left, the value in tabular figures at the right.
 pub fn value_row(ui: &mut Ui, label: &str, value: impl Into<String>) -> Response {
-    ui.horizontal(|ui| {
-        ui.set_min_height(theme::ROW_HEIGHT);
-        ui.label(theme::dim(ui, label));
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(number_text(value))).inner
-    })
-    .inner
+    split_row(ui, label, |ui| ui.label(number_text(value)))
+}
+
+/// A row of a list: a dim label at the left, and what `right` puts there, from right to left.
+pub fn split_row<R>(ui: &mut Ui, label: &str, right: impl FnOnce(&mut Ui) -> R) -> R {
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), theme::ROW_HEIGHT), Sense::hover());
+    let child = |layout| UiBuilder::new().max_rect(rect).layout(layout);
+    let mut left_side = ui.new_child(child(Layout::left_to_right(Align::Center)));
+    left_side.label(theme::dim(ui, label));
+    right(&mut ui.new_child(child(Layout::right_to_left(Align::Center))))
 }
 
 #[cfg(test)]
