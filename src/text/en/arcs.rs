@@ -158,6 +158,12 @@ pub fn refused_captures(num_refused: usize, num_captures: usize) -> String {
     format!("{num_refused} of {num_captures} profiles hold no usable arc.")
 }
 
+/// Label of the section's centre, in two lines so that it has room inside the circle.
+#[must_use]
+pub fn centre(x_mm: &str, z_mm: &str) -> String {
+    format!("({x_mm},\n {z_mm})")
+}
+
 /// Readout of a point of the profile.
 #[must_use]
 pub fn point_readout(x_mm: &str, z_mm: &str, residual_um: &str) -> String {

@@ -14,8 +14,6 @@ pub const OUT_OF_DATE: &str = "out of date";
 pub const WHY: &str = "Why?";
 /// No method gave a result.
 pub const NO_METHOD: &str = "No method could compute a calibration; each card says what it needs.";
-/// Before the toggles of the methods.
-pub const SHOW: &str = "Show";
 /// Errors relative to the first station, as in the paper.
 pub const FROM_FIRST: &str = "from first";
 /// The same, on hover.

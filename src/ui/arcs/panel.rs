@@ -23,6 +23,8 @@ const SIDE_BY_SIDE_FROM: f32 = 560.0;
 const STACKED_HEIGHT: f32 = 420.0;
 /// Height of the strip above the plots.
 const STRIP_HEIGHT: f32 = 44.0;
+/// Width of the word before the step buttons and of these.
+const STEPS_WIDTH: f32 = 190.0;
 /// Height of the strip below the plots: two lines of text.
 const BOTTOM_HEIGHT: f32 = 62.0;
 
@@ -227,7 +229,11 @@ fn plots(
         ui.advance_cursor_after_rect(area.with_max_y(area.top() + height));
         bottom_strip(ui, sweep);
     } else {
-        ScrollArea::vertical().id_salt("arcs plots").auto_shrink([false, false]).show(ui, |ui| {
+        // The scroll bar gets the panel's margin, so that it covers no plot.
+        let area = ui.available_rect_before_wrap();
+        let mut page = ui.new_child(UiBuilder::new().max_rect(area.with_max_x(area.right() + theme::GAP - 2.0)));
+        ScrollArea::vertical().id_salt("arcs plots").auto_shrink([false, false]).show(&mut page, |ui| {
+            ui.set_max_width(area.width());
             ui.spacing_mut().item_spacing.y = theme::GAP;
             profile_card(ui, &title, STACKED_HEIGHT, view.as_deref(), &mut state.is_profile_fitted);
             curve_card(ui, STACKED_HEIGHT, station, sweep, ball_radius_mm, selection, state, hovered_in_list);
@@ -263,9 +269,7 @@ fn top_strip(
                     })
                     .response
                     .labelled_by(label.id);
-                ui.add_space(8.0);
                 steps(ui, station, selection);
-                ui.add_space(8.0);
                 if let Some(sweep) = sweep {
                     let angle_deg = sweep.travel_off_normal_rad.to_degrees();
                     ui.label(theme::dim(ui, text::travel_off_normal(angle_deg)));
@@ -287,7 +291,11 @@ fn top_strip(
 
 fn steps(ui: &mut Ui, station: &StationRow, selection: &mut Selection) {
     let num_steps = station.captures.len();
-    ui.label(theme::dim(ui, text::STEP));
+    // In a narrow window the buttons stay together, at the price of the word before them.
+    if ui.available_size_before_wrap().x > STEPS_WIDTH {
+        ui.add_space(8.0);
+        ui.label(theme::dim(ui, text::STEP));
+    }
     ui.scope(|ui| {
         ui.spacing_mut().button_padding.x = 8.0;
         let step_to = |ui: &mut Ui, is_possible: bool, sign: &str, name: &str| {

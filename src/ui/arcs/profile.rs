@@ -145,12 +145,11 @@ fn paint_profile(ui: &Ui, canvas: &Canvas, model: &ProfileModel) {
         let stroke = Stroke::new(1.8, section_color);
         canvas.painter.line_segment([centre - vec2(6.0, 0.0), centre + vec2(6.0, 0.0)], stroke);
         canvas.painter.line_segment([centre - vec2(0.0, 6.0), centre + vec2(0.0, 6.0)], stroke);
-        let label = format!(
-            "({}, {})",
-            with_std(circle.x_mm, section.std_mm[0]),
-            with_std(circle.z_mm, section.std_mm[1])
+        let label = text::centre(
+            &with_std(circle.x_mm, section.std_mm[0]),
+            &with_std(circle.z_mm, section.std_mm[1]),
         );
-        canvas.note(ui, centre + vec2(0.0, -12.0), Align2::CENTER_BOTTOM, &label, palette.text);
+        canvas.note(ui, centre + vec2(0.0, 10.0), Align2::CENTER_TOP, &label, palette.text);
     }
 }
 

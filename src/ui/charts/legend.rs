@@ -37,9 +37,9 @@ pub struct LegendEntry {
 /// A row of entries, wrapped where it does not fit.
 pub fn legend(ui: &mut Ui, entries: &[LegendEntry]) {
     egui::Frame::new().inner_margin(egui::Margin { left: 12, right: 8, top: 6, bottom: 0 }).show(ui, |ui| {
+        ui.spacing_mut().interact_size.y = 16.0;
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = vec2(12.0, 0.0);
-            ui.spacing_mut().interact_size.y = 16.0;
             for entry in entries {
                 let font = egui::FontId::proportional(theme::SMALL_SIZE);
                 let galley = ui.painter().layout_no_wrap(entry.text.clone(), font, theme::palette(ui).text_dim);

@@ -12,7 +12,7 @@ use crate::ui::{PanelContext, theme, widgets};
 
 use super::bars::{self, BarSource};
 use super::cards::{self, CardOptions};
-use super::model::{COLUMN_ORDER, CompareModel, ErrorReference, MethodTable};
+use super::model::{COLUMN_ORDER, Column, CompareModel, ErrorReference, MethodTable};
 use super::scatter::{self, ScatterView};
 use super::{differences, published, table, verdict};
 
@@ -54,9 +54,14 @@ impl CompareState {
         }
     }
 
-    /// The paper's two methods, and the bundle where three cards have room beside each other.
-    fn shown(&self, width: f32) -> Vec<Method> {
-        self.shown.clone().unwrap_or_else(|| COLUMN_ORDER[..if cards_a_row(width) >= 3 { 3 } else { 2 }].to_vec())
+    /// The paper's two methods; the bundle as well where three cards have room beside each other, or where one of
+    /// the two has no table to show.
+    fn shown(&self, model: &CompareModel, width: f32) -> Vec<Method> {
+        self.shown.clone().unwrap_or_else(|| {
+            let has_failed = model.columns.iter().take(2).any(|column| column.outcome.is_err());
+            let count = if has_failed || cards_a_row(width) >= 3 { 3 } else { 2 };
+            COLUMN_ORDER[..count].to_vec()
+        })
     }
 }
 
@@ -97,7 +102,7 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut CompareStat
         ui.spacing_mut().item_spacing.y = theme::GAP;
         verdict::show(ui, &model, is_out_of_date, &mut state.is_explained);
         let width = ui.available_width();
-        let shown = state.shown(width);
+        let shown = state.shown(&model, width);
         toggles(ui, &model, &shown, state);
         if is_out_of_date {
             ui.set_opacity(0.6);
@@ -133,8 +138,7 @@ fn empty(ui: &mut Ui, sentence: &str) {
 fn toggles(ui: &mut Ui, model: &CompareModel, shown: &[Method], state: &mut CompareState) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(5.0, 6.0);
-        ui.spacing_mut().button_padding.x = 8.0;
-        ui.label(theme::dim(ui, text::SHOW));
+        ui.spacing_mut().button_padding.x = 6.0;
         for column in &model.columns {
             let method = column.method;
             let is_shown = shown.contains(&method);
@@ -169,16 +173,33 @@ fn method_cards(
     context: &mut PanelContext<'_>,
     state: &CompareState,
 ) {
-    let columns: Vec<_> = model.columns.iter().filter(|column| shown.contains(&column.method)).collect();
+    // Tables stand beside each other; a card with nothing but a reason needs little room, below them.
+    let (tables, refusals): (Vec<&Column>, Vec<&Column>) = model
+        .columns
+        .iter()
+        .filter(|column| shown.contains(&column.method))
+        .partition(|column| column.outcome.is_ok());
     let options = CardOptions {
         reference: state.reference,
         has_paper_layout: state.has_paper_layout,
         has_matrix: state.has_matrices,
     };
     let width = ui.available_width();
-    let per_row = cards_a_row(width).min(columns.len()).max(1);
+    for (columns, most) in [(tables, cards_a_row(width)), (refusals, cards_a_row(width).min(2))] {
+        rows_of_cards(ui, &columns, most, options, context);
+    }
+}
+
+fn rows_of_cards(
+    ui: &mut Ui,
+    columns: &[&Column],
+    most_a_row: usize,
+    options: CardOptions,
+    context: &mut PanelContext<'_>,
+) {
+    let per_row = most_a_row.min(columns.len()).max(1);
     #[expect(clippy::cast_precision_loss, reason = "at most four cards")]
-    let card_width = (width - theme::GAP * (per_row - 1) as f32) / per_row as f32;
+    let card_width = (ui.available_width() - theme::GAP * (per_row - 1) as f32) / per_row as f32;
     for row in columns.chunks(per_row) {
         ui.horizontal_top(|ui| {
             ui.spacing_mut().item_spacing.x = theme::GAP;

@@ -23,6 +23,7 @@ pub fn show(ui: &mut Ui, table: &PublishedTable) {
                     count => ui.label(theme::strong(format!("≠ {}", text::misprints(count))).color(palette.bad)),
                 };
             }
+            ui.add_space(12.0);
             let caption = theme::dim(ui, table.caption.as_str());
             ui.add(egui::Label::new(caption).truncate()).on_hover_text(&table.caption);
         });

@@ -127,18 +127,33 @@ pub fn coordinate(value_mm: f64) -> String {
     widgets::fixed(value_mm, 3)
 }
 
-/// The legend of the tints.
+/// The legend of the tints: one piece, so that a line never breaks inside it.
 pub fn tint_legend(ui: &mut Ui) {
-    ui.label(theme::dim(ui, text::TINT_LEGEND).size(theme::SMALL_SIZE));
-    ui.spacing_mut().item_spacing.x = 2.0;
-    for (class, step_mm) in TINT_STEPS_MM.iter().enumerate() {
-        let (rect, _) = ui.allocate_exact_size(vec2(27.0, 18.0), Sense::hover());
-        ui.painter().rect_filled(rect, 2.0, class_tint(class + 1));
-        let color = theme::palette(ui).text_dim;
-        let font = FontId::proportional(theme::SMALL_SIZE);
-        ui.painter().text(rect.center(), Align2::CENTER_CENTER, step_mm, font, color);
+    /// Size of the ground of one class.
+    const CLASS_SIZE: egui::Vec2 = vec2(28.0, 18.0);
+    let color = theme::palette(ui).text_dim;
+    let words = |ui: &Ui, text: &str| {
+        ui.painter().layout_no_wrap(text.to_owned(), FontId::proportional(theme::SMALL_SIZE), color)
+    };
+    let (title, unit) = (words(ui, text::TINT_LEGEND), words(ui, text::TINT_UNIT));
+    let classes: Vec<_> = TINT_STEPS_MM.iter().map(|step_mm| words(ui, &step_mm.to_string())).collect();
+    let width = title.size().x + unit.size().x + 8.0 + TINT_STEPS_MM.iter().map(|_| CLASS_SIZE.x + 2.0).sum::<f32>();
+    let (rect, response) = ui.allocate_exact_size(vec2(width, CLASS_SIZE.y), Sense::hover());
+    response.widget_info(|| {
+        let steps = TINT_STEPS_MM.map(|step_mm| step_mm.to_string()).join(", ");
+        WidgetInfo::labeled(Role::Label, true, format!("{} {steps} {}", text::TINT_LEGEND, text::TINT_UNIT))
+    });
+    let centred = |galley: &egui::Galley| rect.center().y - galley.size().y / 2.0;
+    let mut left = rect.left();
+    ui.painter().galley(pos2(left, centred(&title)), title.clone(), color);
+    left += title.size().x + 4.0;
+    for (class, galley) in classes.into_iter().enumerate() {
+        let ground = Rect::from_min_size(pos2(left, rect.top()), CLASS_SIZE);
+        ui.painter().rect_filled(ground, 2.0, class_tint(class + 1));
+        ui.painter().galley(ground.center() - galley.size() / 2.0, galley, color);
+        left += CLASS_SIZE.x + 2.0;
     }
-    ui.label(theme::dim(ui, text::TINT_UNIT).size(theme::SMALL_SIZE));
+    ui.painter().galley(pos2(left + 2.0, centred(&unit)), unit, color);
 }
 
 #[cfg(test)]

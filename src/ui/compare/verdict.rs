@@ -22,7 +22,7 @@ pub fn show(ui: &mut Ui, model: &CompareModel, is_out_of_date: bool, is_explaine
                 });
                 return;
             };
-            let is_wide = fits_one_line(ui, model, band);
+            let is_wide = fits_one_line(ui, model, band, is_out_of_date);
             ui.horizontal(|ui| {
                 ui.set_min_height(30.0);
                 verdict_words(ui, band);
@@ -34,7 +34,6 @@ pub fn show(ui: &mut Ui, model: &CompareModel, is_out_of_date: bool, is_explaine
                         ui.label(theme::strong(text::OUT_OF_DATE).color(theme::palette(ui).warn));
                     }
                     if let (Some(improvement), true) = (&model.improvement, is_wide) {
-                        ui.add_space(8.0);
                         ui.with_layout(Layout::right_to_left(Align::Center), |ui| better_by(ui, improvement, true));
                     }
                 });
@@ -50,9 +49,9 @@ pub fn show(ui: &mut Ui, model: &CompareModel, is_out_of_date: bool, is_explaine
 }
 
 /// Whether verdict and comparison have room beside each other.
-fn fits_one_line(ui: &Ui, model: &CompareModel, band: &Band) -> bool {
-    /// The verdict's mark, the button, the note "out of date" and the gaps between all these, points.
-    const OTHERS: f32 = 210.0;
+fn fits_one_line(ui: &Ui, model: &CompareModel, band: &Band, is_out_of_date: bool) -> bool {
+    /// The verdict's mark, the button and the gaps between all these, points.
+    const OTHERS: f32 = 134.0;
     let width = |text: &str, size: f32| {
         let font = egui::FontId::proportional(size);
         ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::PLACEHOLDER).size().x
@@ -65,7 +64,8 @@ fn fits_one_line(ui: &Ui, model: &CompareModel, band: &Band) -> bool {
     });
     let headline = text::headline("100") + " " + &text::headline_figure("0.000");
     let verdict = width(verdict_name(band.verdict), theme::HEADING_SIZE) + width(&headline, theme::BODY_SIZE);
-    verdict + comparison + OTHERS <= ui.available_width()
+    let note = if is_out_of_date { width(text::OUT_OF_DATE, theme::BODY_SIZE) + 8.0 } else { 0.0 };
+    verdict + comparison + note + OTHERS <= ui.available_width()
 }
 
 fn verdict_words(ui: &mut Ui, band: &Band) {

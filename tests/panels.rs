@@ -1,0 +1,248 @@
+//! The arcs and the comparison panel alone, driven by the names that screen readers see.
+
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, sync_channel};
+
+use egui::Key;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use handeye::app::{Command, Workbench};
+use handeye::calibrate::{self, Method};
+use handeye::geometry::Profile;
+use handeye::session::{self, Reading, Session, samples};
+use handeye::text::{arcs as arcs_words, compare as compare_words, method_name, method_short_name};
+use handeye::ui::arcs::ArcsState;
+use handeye::ui::compare::CompareState;
+use handeye::ui::{self, PanelContext, Selection};
+
+#[derive(Clone, Copy)]
+enum Shown {
+    Arcs,
+    Compare,
+}
+
+struct Bench {
+    workbench: Workbench,
+    woken: Receiver<()>,
+    shown: Shown,
+    selection: Selection,
+    commands: Vec<Command>,
+    arcs: ArcsState,
+    compare: CompareState,
+}
+
+impl Bench {
+    fn empty(shown: Shown) -> Self {
+        let (sender, woken) = sync_channel(8);
+        Self {
+            workbench: Workbench::new(Arc::new(move || {
+                // A full channel already holds the news that there is news.
+                sender.try_send(()).ok();
+            })),
+            woken,
+            shown,
+            selection: Selection::default(),
+            commands: Vec::new(),
+            arcs: ArcsState::default(),
+            compare: CompareState::default(),
+        }
+    }
+
+    fn with(shown: Shown, session: Session) -> Self {
+        let mut bench = Self::empty(shown);
+        bench.workbench.open_session(session, None);
+        bench.settle();
+        bench
+    }
+
+    fn settle(&mut self) {
+        while self.workbench.is_busy() {
+            self.woken.recv().expect("the worker wakes us");
+            self.workbench.poll();
+        }
+    }
+
+    fn ui(ui: &mut egui::Ui, bench: &mut Self) {
+        let mut context = PanelContext {
+            workbench: &bench.workbench,
+            selection: &mut bench.selection,
+            commands: &mut bench.commands,
+        };
+        match bench.shown {
+            Shown::Arcs => ui::arcs::show(ui, &mut context, &mut bench.arcs),
+            Shown::Compare => ui::compare::show(ui, &mut context, &mut bench.compare),
+        }
+    }
+
+    fn harness(self) -> Harness<'static, Self> {
+        self.harness_of_size([1000.0, 800.0])
+    }
+
+    fn harness_of_size(self, size: [f32; 2]) -> Harness<'static, Self> {
+        let mut harness = Harness::builder()
+            .with_size(size)
+            .with_context_setup(ui::theme::install)
+            .build_ui_state(Self::ui, self);
+        harness.run_steps(4);
+        harness
+    }
+}
+
+fn sample(file_name: &str) -> Session {
+    let sample = samples::ALL.iter().find(|sample| sample.file_name == file_name).expect("a sample");
+    session::parse(sample.json.as_bytes(), sample.file_name).expect("the sample is a session")
+}
+
+fn selected(harness: &Harness<'static, Bench>) -> (usize, usize) {
+    let selection = &harness.state().selection;
+    (selection.station_idx, selection.capture_idx)
+}
+
+fn press(harness: &mut Harness<'static, Bench>, key: Key) {
+    harness.key_press(key);
+    harness.run_steps(3);
+}
+
+#[test]
+fn a_click_on_a_stations_box_yields_exactly_that_command() {
+    let mut harness = Bench::with(Shown::Compare, sample("clean-sweeps.json")).harness();
+    let name = compare_words::use_station("2", method_name(Method::BallMaxArc));
+    harness.get_by_label(&name).click();
+    harness.run_steps(3);
+    let expected = Command::SetStationEnabled { station_idx: 1, enabled: false };
+    assert_eq!(harness.state().commands, [expected]);
+}
+
+#[test]
+fn a_station_left_out_stays_listed_and_can_be_ticked_again() {
+    let mut bench = Bench::with(Shown::Compare, sample("clean-sweeps.json"));
+    bench.workbench.apply(Command::SetStationEnabled { station_idx: 2, enabled: false });
+    bench.settle();
+    let mut harness = bench.harness();
+    let name = compare_words::use_station("3", method_name(Method::BallFixedPoint));
+    harness.get_by_label(&name).click();
+    harness.run_steps(3);
+    let expected = Command::SetStationEnabled { station_idx: 2, enabled: true };
+    assert_eq!(harness.state().commands, [expected]);
+}
+
+#[test]
+fn a_method_without_a_result_says_why_in_the_errors_own_words() {
+    let bench = Bench::with(Shown::Compare, sample("near-largest-arc.json"));
+    let results = bench.workbench.results().expect("solved");
+    let result = results.method(Method::BallMaxArc).expect("every method is tried");
+    let sentence = result.outcome.as_ref().expect_err("there are no sweeps").to_string();
+    bench.harness().get_by_label(&sentence);
+}
+
+#[test]
+fn the_toggles_choose_the_cards() {
+    let mut harness = Bench::with(Shown::Compare, sample("clean-sweeps.json")).harness();
+    let card = compare_words::select_method(method_name(Method::BallBundle));
+    assert!(harness.query_by_label(&card).is_none(), "two tables fit side by side here");
+    harness.get_by_label(&compare_words::show_method(method_short_name(Method::BallBundle))).click();
+    harness.run_steps(3);
+    harness.get_by_label(&card).click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().selection.method, Method::BallBundle);
+    assert!(harness.state().commands.is_empty());
+}
+
+#[test]
+fn every_view_of_the_comparison_draws_every_sample() {
+    for sample in samples::ALL {
+        let session = session::parse(sample.json.as_bytes(), sample.file_name).expect("the sample is a session");
+        for width in [560.0, 1000.0, 1600.0] {
+            let mut harness =
+                Bench::with(Shown::Compare, session.clone()).harness_of_size([width, 800.0]);
+            for toggle in [
+                compare_words::WHY,
+                compare_words::ABOUT_MEAN,
+                compare_words::PAPER_LAYOUT,
+                compare_words::MATRICES,
+                compare_words::BARS_IN_SAMPLE,
+            ] {
+                if let Some(button) = harness.query_by_label(toggle) {
+                    button.click();
+                }
+                harness.run_steps(2);
+            }
+            assert!(harness.state().commands.is_empty(), "{}", sample.file_name);
+        }
+    }
+}
+
+#[test]
+fn results_of_an_earlier_revision_stay_and_are_marked() {
+    let mut bench = Bench::with(Shown::Compare, sample("clean-sweeps.json"));
+    bench.workbench.apply(Command::SetStationEnabled { station_idx: 0, enabled: false });
+    let harness = bench.harness();
+    harness.get_by_label(compare_words::OUT_OF_DATE);
+    let row = compare_words::station_row("2", method_name(Method::BallMaxArc));
+    harness.get_by_label(&row);
+}
+
+#[test]
+fn arrow_keys_move_the_station_and_the_step() {
+    let mut harness = Bench::with(Shown::Arcs, sample("clean-sweeps.json")).harness();
+    press(&mut harness, Key::ArrowRight);
+    press(&mut harness, Key::ArrowRight);
+    press(&mut harness, Key::ArrowLeft);
+    assert_eq!(selected(&harness), (0, 1));
+    press(&mut harness, Key::ArrowDown);
+    assert_eq!(selected(&harness), (1, 0), "another station begins at its first step");
+    press(&mut harness, Key::ArrowUp);
+    press(&mut harness, Key::ArrowUp);
+    press(&mut harness, Key::ArrowLeft);
+    assert_eq!(selected(&harness), (0, 0), "the ends hold");
+}
+
+#[test]
+fn buttons_and_rows_select_stations_and_steps() {
+    let mut harness = Bench::with(Shown::Arcs, sample("clean-sweeps.json")).harness();
+    harness.get_by_label(arcs_words::NEXT_STEP).click();
+    harness.run_steps(3);
+    assert_eq!(selected(&harness), (0, 1));
+    harness.get_by_label(&arcs_words::expand("3")).click();
+    harness.run_steps(3);
+    assert_eq!(selected(&harness), (0, 1), "looking at the steps selects nothing");
+    harness.get_by_label(&arcs_words::step_name("3", 4)).click();
+    harness.run_steps(3);
+    assert_eq!(selected(&harness), (2, 3));
+    harness.get_by_label(&arcs_words::profile_title("3", 4));
+    assert!(harness.state().commands.is_empty());
+}
+
+#[test]
+fn a_refused_profile_says_why_in_the_errors_own_words() {
+    let mut session = sample("clean-sweeps.json");
+    let profile = Profile::new(vec![0.0, 1.0, 2.0], &[Some(80.0), None, Some(80.5)]).expect("valid");
+    session.stations[0].captures[0].reading = Reading::Profile(Arc::new(profile));
+    let bench = Bench::with(Shown::Arcs, session);
+    let results = bench.workbench.results().expect("solved");
+    let Some(calibrate::Reading::Refused(refusal)) = results.measured.reading(0, 0) else {
+        panic!("two points are no arc");
+    };
+    let sentence = refusal.to_string();
+    bench.harness().get_by_label(&sentence);
+}
+
+#[test]
+fn every_sample_has_its_arcs_or_says_what_to_do() {
+    for sample in samples::ALL {
+        let session = session::parse(sample.json.as_bytes(), sample.file_name).expect("the sample is a session");
+        let is_reduced = matches!(session.stations[0].captures[0].reading, Reading::Point(_));
+        let has_sweep = session.stations[0].captures.len() > 1;
+        for width in [560.0, 1000.0] {
+            let harness = Bench::with(Shown::Arcs, session.clone()).harness_of_size([width, 1200.0]);
+            assert_eq!(harness.query_by_label(arcs_words::POINT_READING).is_some(), is_reduced, "{}", sample.file_name);
+            assert_eq!(harness.query_by_label(arcs_words::NO_SWEEP).is_some(), !has_sweep, "{}", sample.file_name);
+        }
+    }
+}
+
+#[test]
+fn without_a_session_both_panels_say_what_to_do() {
+    Bench::empty(Shown::Arcs).harness().get_by_label(arcs_words::NO_SESSION);
+    Bench::empty(Shown::Compare).harness().get_by_label(compare_words::NO_SESSION);
+}
