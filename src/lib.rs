@@ -6,10 +6,12 @@
 //!
 //! | floor | module | holds |
 //! | --- | --- | --- |
-//! | 7 | `main.rs` | arguments, then the window or a command |
-//! | 6 | [`ui`], [`cli`] | egui panels (the only code that names egui) · the commands without a window |
-//! | 5 | [`app`] | the workbench: document, history, results, jobs, notices |
-//! | 4 | [`report`], [`simulate`], [`text`] | result files and tables · simulated sessions · wording |
+//! | 9 | `main.rs` | arguments, then the window or a command |
+//! | 8 | [`cli`] | the commands without a window |
+//! | 7 | [`ui`] | egui panels: the only code that names egui |
+//! | 6 | [`app`] | the workbench: document, history, results, jobs, notices |
+//! | 5 | [`report`] | result files, digits |
+//! | 4 | [`text`], [`simulate`] | wording · simulated sessions |
 //! | 3 | [`session`] | the document: model, file format, checks, history, measuring |
 //! | 2 | [`calibrate`] | hand-eye methods, least squares on SE(3), uncertainty, validation |
 //! | 1 | [`fit`] | circle fits and the extraction of arcs |

@@ -1,43 +1,14 @@
 //! Session files: what is refused and how, what survives, and that saving never costs the old file.
 
 use std::fs;
-use std::sync::Arc;
 
 use handeye::calibrate::{Mount, Side, SideChoice};
-use handeye::geometry::{Base, Flange, PoseConvention, Profile, Transform, Vec3, so3};
+use handeye::geometry::{PoseConvention, Transform, Vec3, so3};
 use handeye::session::format::{load_with_notes, parse_with_notes};
-use handeye::session::{
-    Capture, Edge, Published, Reading, Robot, Sensor, Session, SessionError, Station, Target, Truth, check, load, parse,
-    save, to_json,
-};
-use proptest::prelude::*;
+use handeye::session::{Edge, Reading, Session, SessionError, Target, check, load, parse, save, to_json};
 
 /// A small session with every kind of field; the broken files below are made from it by one replacement each.
-const VALID: &str = r#"{
-  "format": "handeye-session",
-  "version": 1,
-  "name": "cell 3",
-  "notes": "line 1\nline 2",
-  "robot": { "model": "FANUC", "pose_convention": "fanuc-wpr", "position_std_mm": 0.02, "orientation_std_deg": 0.005 },
-  "sensor": { "model": "Keyence", "profile_std_mm": 0.01, "reference_distance_mm": 60 },
-  "target": { "kind": "ball", "radius_mm": 15.0 },
-  "mount": "on-flange",
-  "stations": [
-    { "label": "first", "enabled": false, "side": "+",
-      "captures": [
-        { "base_from_flange": { "translation_mm": [1, 2, 3], "quaternion_wxyz": [0.6, 0.8, 0, 0] },
-          "profile": { "x_mm": [-1, 0.5], "z_mm": [0.25, null] } },
-        { "base_from_flange": { "translation_mm": [1, 2, 4], "quaternion_wxyz": [0.6, 0.8, 0, 0] },
-          "step": -0.5, "point_mm": [4, 5, 6] }
-      ] },
-    { "captures": [
-        { "base_from_flange": { "translation_mm": [7, 8, 9], "euler_deg": [180, 10, 20], "convention": "kuka-abc" },
-          "profile": { "x_mm": [], "z_mm": [] } }
-      ] }
-  ],
-  "published": { "caption": "Table 1", "ball_in_base_mm": [[1, 2, 3], [4, 5, 6]], "error_from_first_mm": [[0, 0, 0], [3, 3, 3]] },
-  "truth": { "flange_from_sensor": { "translation_mm": [0, 0, 0], "quaternion_wxyz": [1, 0, 0, 0] }, "ball_in_base_mm": [0, 0, 0] }
-}"#;
+const VALID: &str = include_str!("data/every_field.json");
 
 fn valid() -> Session {
     parse(VALID.as_bytes(), "valid.json").expect("the base of the tests is valid")
@@ -56,6 +27,7 @@ fn check_refused(json: &str, fragments: &[&str]) {
     }
 }
 
+#[rustfmt::skip]
 /// Refusals of [`VALID`] with one piece replaced: the piece, what stands there instead, what the message holds.
 const BROKEN: &[(&str, &str, &[&str])] = &[
     ("\"handeye-session\"", "\"handeye-result\"", &["format: found \"handeye-result\", expected \"handeye-session\""]),
@@ -149,11 +121,17 @@ fn files_that_are_no_session_at_all_are_refused() {
     check_refused(" \n\t", &["found an empty file"]);
     check_refused("[]", &["top level: found an empty list, expected a session"]);
     check_refused("null", &["top level: found null"]);
-    check_refused("{\"format\": \"handeye-session\"", &["line 1, column 28: found the end of the file"]);
+    check_refused(
+        "{\"format\": \"handeye-session\"",
+        &["line 1, column 28: found the end of the file"],
+    );
     check_refused(&VALID[..VALID.len() / 2], &["found the end of the file, expected JSON"]);
     check_refused(&format!("{VALID} x"), &["found `x`", "trailing characters"]);
     check_refused(&"[".repeat(100_000), &["recursion limit exceeded"]);
-    check_refused(&format!("{{\"deep\": {}", "{\"a\":".repeat(10_000)), &["recursion limit exceeded"]);
+    check_refused(
+        &format!("{{\"deep\": {}", "{\"a\":".repeat(10_000)),
+        &["recursion limit exceeded"],
+    );
     check_refused("x,y,z\n1,2,3\n", &["line 1, column 1: found `x,y,z`"]);
 }
 
@@ -164,7 +142,10 @@ fn text_must_be_utf8_and_may_begin_with_a_byte_order_mark() {
     assert_eq!(parse(&bytes, "bom.json"), Ok(valid()));
     let broken = b"{\n  \"name\": \"\xff\" }";
     let refusal = parse(broken, "latin.json").expect_err("not UTF-8").to_string();
-    assert!(refusal.contains("latin.json, line 2, column 12: found bytes that are not UTF-8"), "{refusal}");
+    assert!(
+        refusal.contains("latin.json, line 2, column 12: found bytes that are not UTF-8"),
+        "{refusal}"
+    );
 }
 
 #[test]
@@ -177,9 +158,20 @@ fn the_valid_session_is_read_as_written() {
     assert!(!session.stations[0].enabled && session.stations[1].enabled);
     assert_eq!(session.stations[1].label, "2", "the label is its number by default");
     assert_eq!(session.stations[0].captures[1].step_mm, Some(-0.5));
-    assert_eq!(session.stations[0].captures[1].reading, Reading::Point(Vec3::new(4.0, 5.0, 6.0)));
-    let kuka = PoseConvention::by_id("kuka-abc").expect("known").rotation_from_angles_deg([180.0, 10.0, 20.0]);
-    assert!(session.stations[1].captures[0].base_from_flange.rotation().angle_to(&kuka) < 1e-12);
+    assert_eq!(
+        session.stations[0].captures[1].reading,
+        Reading::Point(Vec3::new(4.0, 5.0, 6.0))
+    );
+    let kuka = PoseConvention::by_id("kuka-abc")
+        .expect("known")
+        .rotation_from_angles_deg([180.0, 10.0, 20.0]);
+    assert!(
+        session.stations[1].captures[0]
+            .base_from_flange
+            .rotation()
+            .angle_to(&kuka)
+            < 1e-12
+    );
     assert_eq!(parse(to_json(&session).as_bytes(), "again.json"), Ok(session));
 }
 
@@ -188,48 +180,79 @@ fn a_session_without_stations_and_optional_fields_is_fine() {
     let json = r#"{"format": "handeye-session", "version": 1, "target": {"kind": "point"}, "stations": [],
                    "robot": null, "published": null}"#;
     let session = parse(json.as_bytes(), "empty.json").expect("valid");
-    assert_eq!((session.name.as_str(), session.stations.len(), session.mount), ("", 0, Mount::OnFlange));
+    assert_eq!(
+        (session.name.as_str(), session.stations.len(), session.mount),
+        ("", 0, Mount::OnFlange)
+    );
     assert_eq!(parse(to_json(&session).as_bytes(), "again.json"), Ok(session));
 }
 
 #[test]
 fn plate_and_sequence_sessions_are_read_and_kept() {
     let plate = VALID
-        .replace("\"kind\": \"ball\", \"radius_mm\": 15.0", "\"kind\": \"right-angle-plate\"")
+        .replace(
+            "\"kind\": \"ball\", \"radius_mm\": 15.0",
+            "\"kind\": \"right-angle-plate\"",
+        )
         .replace("\"side\": \"+\"", "\"edge\": \"q\"")
-        .replace("{ \"captures\": [\n        { \"base_from_flange\": { \"translation_mm\": [7", "{ \"edge\": \"p\", \"captures\": [\n        { \"base_from_flange\": { \"translation_mm\": [7");
+        .replace(
+            "{ \"captures\": [\n        { \"base_from_flange\": { \"translation_mm\": [7",
+            "{ \"edge\": \"p\", \"captures\": [\n        { \"base_from_flange\": { \"translation_mm\": [7",
+        );
     let session = parse(plate.as_bytes(), "plate.json").expect("valid");
     assert_eq!(session.stations[0].edge, Some(Edge::Q));
     assert_eq!(session.truth, None, "the truth of other targets is not ours to read");
     assert!(to_json(&session).contains("\"truth\""), "but it is kept");
-    let sequence = r#"{"format": "handeye-session", "version": 1, "target": {"kind": "rgbd"}, "sequence": "desk/run 1"}"#;
+    let sequence =
+        r#"{"format": "handeye-session", "version": 1, "target": {"kind": "rgbd"}, "sequence": "desk/run 1"}"#;
     let session = parse(sequence.as_bytes(), "rgbd.json").expect("valid");
-    assert_eq!(session.target, Target::Rgbd { sequence: "desk/run 1".to_owned() });
+    assert_eq!(
+        session.target,
+        Target::Rgbd {
+            sequence: "desk/run 1".to_owned()
+        }
+    );
     assert_eq!(parse(to_json(&session).as_bytes(), "again.json"), Ok(session));
 }
 
 #[test]
 fn a_fixed_sensors_truth_has_the_names_of_its_frames_and_either_is_read() {
     let on_flange_names = VALID.replace("\"mount\": \"on-flange\"", "\"mount\": \"fixed\"");
-    let fixed_names =
-        on_flange_names.replace("flange_from_sensor", "base_from_sensor").replace("\"ball_in_base_mm\": [0", "\"ball_in_flange_mm\": [0");
+    let fixed_names = on_flange_names
+        .replace("flange_from_sensor", "base_from_sensor")
+        .replace("\"ball_in_base_mm\": [0", "\"ball_in_flange_mm\": [0");
     let session = parse(fixed_names.as_bytes(), "fixed.json").expect("valid");
     assert_eq!(parse(on_flange_names.as_bytes(), "fixed.json").as_ref(), Ok(&session));
     let saved = to_json(&session);
-    assert!(saved.contains("\"base_from_sensor\"") && saved.contains("\"ball_in_flange_mm\""), "{saved}");
+    assert!(
+        saved.contains("\"base_from_sensor\"") && saved.contains("\"ball_in_flange_mm\""),
+        "{saved}"
+    );
 }
 
 #[test]
 fn unknown_fields_survive_at_every_level() {
     let mut json = VALID.to_owned();
     let objects = [
-        "\"format\": ", "\"model\": \"FANUC\"", "\"model\": \"Keyence\"", "\"kind\": ", "\"label\": ",
-        "\"base_from_flange\": { \"translation_mm\": [1, 2, 4]", "\"translation_mm\": [1, 2, 3]", "\"x_mm\": [-1",
-        "\"caption\": ", "\"flange_from_sensor\": ", "\"translation_mm\": [0",
+        "\"format\": ",
+        "\"model\": \"FANUC\"",
+        "\"model\": \"Keyence\"",
+        "\"kind\": ",
+        "\"label\": ",
+        "\"base_from_flange\": { \"translation_mm\": [1, 2, 4]",
+        "\"translation_mm\": [1, 2, 3]",
+        "\"x_mm\": [-1",
+        "\"caption\": ",
+        "\"flange_from_sensor\": ",
+        "\"translation_mm\": [0",
     ];
     for (idx, object) in objects.iter().enumerate() {
         assert_eq!(json.matches(object).count(), 1, "{object}");
-        json = json.replacen(object, &format!("\"their {idx}\": {{\"id\": 12345678901234567890, \"list\": [{idx}, null, [\"x\"]]}}, {object}"), 1);
+        json = json.replacen(
+            object,
+            &format!("\"their {idx}\": {{\"id\": 12345678901234567890, \"list\": [{idx}, null, [\"x\"]]}}, {object}"),
+            1,
+        );
     }
     let session = parse(json.as_bytes(), "theirs.json").expect("valid");
     let saved = to_json(&session);
@@ -249,7 +272,10 @@ fn the_text_is_stable_and_readable() {
         "      \"captures\": [",
         "            \"z_mm\": [0.25, null]",
     ] {
-        assert!(saved.lines().any(|found| found == line), "{line:?} is no line of\n{saved}");
+        assert!(
+            saved.lines().any(|found| found == line),
+            "{line:?} is no line of\n{saved}"
+        );
     }
     assert_eq!(to_json(&parse(saved.as_bytes(), "again.json").expect("valid")), saved);
 }
@@ -262,10 +288,19 @@ fn a_rounded_quaternion_is_normalised_and_only_a_badly_rounded_one_is_noted() {
     };
     let rounded = with_quaternion("[-0.6000001, -0.8, 0, 0]");
     assert_eq!(rounded.notes, []);
-    let quaternion = rounded.session.stations[0].captures[0].base_from_flange.quaternion_wxyz();
+    let quaternion = rounded.session.stations[0].captures[0]
+        .base_from_flange
+        .quaternion_wxyz();
     assert!((quaternion.iter().map(|v| v * v).sum::<f64>() - 1.0).abs() < 1e-15 && quaternion[0] > 0.0);
     let noted = with_quaternion("[0.6004, 0.8, 0, 0]");
-    let [check::Finding::QuaternionsNormalised { num_poses: 1, worst_path, .. }] = noted.notes.as_slice() else {
+    let [
+        check::Finding::QuaternionsNormalised {
+            num_poses: 1,
+            worst_path,
+            ..
+        },
+    ] = noted.notes.as_slice()
+    else {
         panic!("{:?}", noted.notes);
     };
     assert_eq!(worst_path, "stations[0].captures[0].base_from_flange.quaternion_wxyz");
@@ -277,7 +312,10 @@ fn saving_and_opening_gives_the_same_session_through_unknown_permissions_and_lin
     let path = folder.path().join("cell 3.json");
     save(&valid(), &path).expect("saved");
     assert_eq!(load(&path), Ok(valid()));
-    let other = Session { name: "other".to_owned(), ..valid() };
+    let other = Session {
+        name: "other".to_owned(),
+        ..valid()
+    };
     #[cfg(unix)]
     let path = {
         use std::os::unix::fs::PermissionsExt;
@@ -292,7 +330,10 @@ fn saving_and_opening_gives_the_same_session_through_unknown_permissions_and_lin
     #[cfg(not(unix))]
     save(&other, &path).expect("saved");
     assert_eq!(load_with_notes(&path).map(|loaded| loaded.session), Ok(other));
-    let leftovers = fs::read_dir(folder.path()).expect("listed").flatten().any(|entry| entry.file_name().to_string_lossy().ends_with(".tmp"));
+    let leftovers = fs::read_dir(folder.path())
+        .expect("listed")
+        .flatten()
+        .any(|entry| entry.file_name().to_string_lossy().ends_with(".tmp"));
     assert!(!leftovers);
 }
 
@@ -307,17 +348,32 @@ fn a_failed_save_leaves_the_old_file_whole() {
         Transform::from_parts(Vec3::new(f64::NAN, 0.0, 0.0), so3::exp(Vec3::zeros()));
     let refusal = save(&broken, &path).expect_err("could not be opened again");
     assert!(matches!(refusal, SessionError::WouldNotReadBack { .. }), "{refusal}");
-    assert!(refusal.to_string().contains("stations[0].captures[0].base_from_flange.translation_mm[0]: found null"));
+    assert!(
+        refusal
+            .to_string()
+            .contains("stations[0].captures[0].base_from_flange.translation_mm[0]: found null")
+    );
     assert_eq!(fs::read(&path).expect("there"), before);
 
     let in_the_way = folder.path().join("folder.json");
     fs::create_dir(&in_the_way).expect("made");
-    for target in [in_the_way.clone(), folder.path().join("missing").join("cell.json"), path.join("cell.json")] {
+    for target in [
+        in_the_way.clone(),
+        folder.path().join("missing").join("cell.json"),
+        path.join("cell.json"),
+    ] {
         let refusal = save(&valid(), &target).expect_err("cannot be written");
         assert!(matches!(refusal, SessionError::Unwritable { .. }), "{refusal}");
-        assert!(refusal.to_string().contains("cannot save") && !refusal.to_string().contains('\n'), "{refusal}");
+        assert!(
+            refusal.to_string().contains("cannot save") && !refusal.to_string().contains('\n'),
+            "{refusal}"
+        );
     }
-    assert_eq!(fs::read_dir(folder.path()).expect("listed").count(), 2, "nothing is left behind");
+    assert_eq!(
+        fs::read_dir(folder.path()).expect("listed").count(),
+        2,
+        "nothing is left behind"
+    );
 }
 
 #[test]
@@ -326,128 +382,18 @@ fn what_is_no_file_is_refused() {
     let refusal = load(folder.path()).expect_err("a folder").to_string();
     assert!(refusal.contains("found a folder, expected a session file"), "{refusal}");
     let refusal = load(&folder.path().join("none.json")).expect_err("missing").to_string();
-    assert!(refusal.starts_with("cannot read ") && refusal.contains("none.json"), "{refusal}");
+    assert!(
+        refusal.starts_with("cannot read ") && refusal.contains("none.json"),
+        "{refusal}"
+    );
     let huge = folder.path().join("huge.json");
-    fs::File::create(&huge).expect("made").set_len(600 << 20).expect("sparse");
+    fs::File::create(&huge)
+        .expect("made")
+        .set_len(600 << 20)
+        .expect("sparse");
     let refusal = load(&huge).expect_err("huge").to_string();
-    assert!(refusal.contains("found 629145600 bytes, expected a session of at most 536870912"), "{refusal}");
-}
-
-fn pose() -> impl Strategy<Value = Transform<Base, Flange>> {
-    (prop::array::uniform3(-1e6..1e6), prop::array::uniform3(-3.0..3.0)).prop_map(|(translation, rotation_vector)| {
-        let rotation = so3::exp(Vec3::from(rotation_vector));
-        let sign = if rotation.w < 0.0 { -1.0 } else { 1.0 };
-        Transform::from_parts(
-            Vec3::from(translation),
-            nalgebra::UnitQuaternion::new_unchecked(rotation.into_inner() * sign),
-        )
-    })
-}
-
-fn reading() -> impl Strategy<Value = Reading> {
-    let point = prop::array::uniform3(-1e5..1e5).prop_map(|point| Reading::Point(Vec3::from(point)));
-    let coordinate = prop_oneof![-1e5..1e5, Just(0.0), Just(-1e-300), Just(1e-9), Just(0.1)];
-    let profile = prop::collection::vec((coordinate.clone(), prop::option::of(coordinate)), 0..12).prop_map(|points| {
-        let (x_mm, z_mm): (Vec<f64>, Vec<Option<f64>>) = points.into_iter().unzip();
-        Reading::Profile(Arc::new(Profile::new(x_mm, &z_mm).expect("within limits")))
-    });
-    prop_oneof![point, profile]
-}
-
-fn station() -> impl Strategy<Value = Station> {
-    let capture = (pose(), reading(), prop::option::of(-1e3..1e3)).prop_map(|(base_from_flange, reading, step_mm)| {
-        Capture { base_from_flange, reading, step_mm, unknown: serde_json::Map::new() }
-    });
-    let side = prop_oneof![Just(SideChoice::Auto), Just(SideChoice::Given(Side::Plus)), Just(SideChoice::Given(Side::Minus))];
-    (any::<bool>(), side, prop::collection::vec(capture, 1..4)).prop_map(|(enabled, side, captures)| Station {
-        label: String::new(),
-        enabled,
-        side,
-        edge: None,
-        captures,
-        unknown: serde_json::Map::new(),
-    })
-}
-
-prop_compose! {
-    fn session()(
-        name in any::<String>(),
-        notes in any::<String>(),
-        position_std_mm in prop::option::of(1e-3..1.0),
-        convention_idx in 0..PoseConvention::ALL.len(),
-        radius_mm in 1e-3..1e4,
-        is_fixed in any::<bool>(),
-        mut stations in prop::collection::vec(station(), 0..4),
-        true_pose in prop::option::of(pose()),
-        is_published in any::<bool>(),
-        key in "[a-z]{3} \\PC{0,5}",
-    ) -> Session {
-        for (idx, station) in stations.iter_mut().enumerate() {
-            station.label = format!("{idx}°");
-        }
-        let published = is_published.then(|| Published {
-            ball_in_base_mm: stations.iter().map(|_| Vec3::new(0.1, -0.2, 1e-17)).collect(),
-            ..Published::default()
-        });
-        let mut unknown = serde_json::Map::new();
-        unknown.insert(key, serde_json::json!({"deep": [1, null, "text", 0.1]}));
-        Session {
-            name,
-            notes,
-            robot: Robot { position_std_mm, pose_convention: &PoseConvention::ALL[convention_idx], ..Robot::default() },
-            sensor: Sensor::default(),
-            target: Target::Ball { radius_mm },
-            mount: if is_fixed { Mount::Fixed } else { Mount::OnFlange },
-            stations,
-            published,
-            truth: true_pose.map(|pose| Truth {
-                flange_from_sensor: Transform::from_rigid(*pose.rigid()),
-                ball_in_base_mm: Vec3::new(1.0, 2.0, 0.3),
-                unknown: serde_json::Map::new(),
-            }),
-            unknown,
-        }
-    }
-}
-
-proptest! {
-    #[test]
-    fn any_session_comes_back_as_it_was_saved(session in session()) {
-        let json = to_json(&session);
-        let again = parse(json.as_bytes(), "random.json");
-        prop_assert_eq!(again.as_ref(), Ok(&session), "{}", json);
-        prop_assert_eq!(to_json(&session), json);
-    }
-
-    #[test]
-    fn no_change_of_a_few_bytes_makes_it_panic_or_break_the_line(
-        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..3_u8), 1..6),
-    ) {
-        let mut bytes = VALID.as_bytes().to_vec();
-        for (index, byte, kind) in changes {
-            let at = index.index(bytes.len());
-            match kind {
-                0 => bytes[at] = byte,
-                1 => bytes.insert(at, byte),
-                _ => { bytes.remove(at); }
-            }
-        }
-        match parse(&bytes, "mutated.json") {
-            Ok(session) => prop_assert_eq!(parse(to_json(&session).as_bytes(), "again.json"), Ok(session)),
-            Err(refusal) => prop_assert!(!refusal.to_string().contains('\n')),
-        }
-    }
-
-    #[test]
-    fn no_swap_of_one_word_for_another_makes_it_panic(
-        at in any::<prop::sample::Index>(),
-        instead in prop::sample::select(vec!["null", "1e308", "-0.0", "{}", "[]", "\"\"", "[[[]]]", "1e-320", "99999999999999999999", "\"\\ud800\""]),
-    ) {
-        let words: Vec<&str> = VALID.split_inclusive([' ', ',', '[', ']', '{', '}']).collect();
-        let at = at.index(words.len());
-        let swapped: String = words.iter().enumerate().map(|(idx, word)| if idx == at { instead } else { word }).collect();
-        if let Ok(session) = parse(swapped.as_bytes(), "swapped.json") {
-            prop_assert_eq!(parse(to_json(&session).as_bytes(), "again.json"), Ok(session));
-        }
-    }
+    assert!(
+        refusal.contains("found 629145600 bytes, expected a session of at most 536870912"),
+        "{refusal}"
+    );
 }

@@ -1,6 +1,7 @@
 //! `handeye check`: is this file a session, and is anything odd about it?
 
-use std::io::{self, Write};
+use std::fmt::Write as _;
+use std::io::{self, Write as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -37,13 +38,18 @@ pub fn listing(loaded: &Loaded) -> String {
     let all: Vec<Finding> = notes.iter().cloned().chain(findings(session)).collect();
     let mut listing = format!(
         "a valid session: {}, {} stations ({} enabled), {} profiles or points\n",
-        if session.name.is_empty() { "unnamed" } else { session.name.lines().next().unwrap_or_default() },
+        if session.name.is_empty() {
+            "unnamed"
+        } else {
+            session.name.lines().next().unwrap_or_default()
+        },
         session.stations.len(),
         session.stations.iter().filter(|station| station.enabled).count(),
         session.num_captures(),
     );
     for finding in &all {
-        listing.push_str(&format!("{}: {}\n", finding.code(), finding_message(finding)));
+        // Writing to a string cannot fail.
+        let _ = writeln!(listing, "{}: {}", finding.code(), finding_message(finding));
     }
     if all.is_empty() {
         listing.push_str("nothing odd found\n");

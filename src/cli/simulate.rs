@@ -328,8 +328,13 @@ mod tests {
             ("--step-mm 16", "expected at most the radius of 15 mm"),
             ("--stations 5 --bad-pose 6", "expected 1 to 5"),
         ] {
-            let refusal = options(&parsed(arguments).expect("well formed")).expect_err(arguments).to_string();
-            assert!(refusal.contains(fragment) && !refusal.contains('\n'), "{arguments}: {refusal}");
+            let refusal = options(&parsed(arguments).expect("well formed"))
+                .expect_err(arguments)
+                .to_string();
+            assert!(
+                refusal.contains(fragment) && !refusal.contains('\n'),
+                "{arguments}: {refusal}"
+            );
         }
     }
 }

@@ -149,7 +149,10 @@ fn noise_not_given(session: &Session) -> Option<Finding> {
         .flat_map(|station| &station.captures)
         .any(|capture| matches!(capture.reading, Reading::Profile(_)));
     let fields: Vec<&'static str> = [
-        ("sensor.profile_std_mm", has_profiles && session.sensor.profile_std_mm.is_none()),
+        (
+            "sensor.profile_std_mm",
+            has_profiles && session.sensor.profile_std_mm.is_none(),
+        ),
         ("robot.position_std_mm", session.robot.position_std_mm.is_none()),
         ("robot.orientation_std_deg", session.robot.orientation_std_deg.is_none()),
     ]
@@ -160,13 +163,17 @@ fn noise_not_given(session: &Session) -> Option<Finding> {
 }
 
 fn empty_profiles(station: &Station) -> impl Iterator<Item = Finding> + '_ {
-    station.captures.iter().enumerate().filter_map(|(capture_idx, capture)| match &capture.reading {
-        Reading::Profile(profile) if profile.valid_points().next().is_none() => Some(Finding::EmptyProfile {
-            label: station.label.clone(),
-            capture_idx,
-        }),
-        _ => None,
-    })
+    station
+        .captures
+        .iter()
+        .enumerate()
+        .filter_map(|(capture_idx, capture)| match &capture.reading {
+            Reading::Profile(profile) if profile.valid_points().next().is_none() => Some(Finding::EmptyProfile {
+                label: station.label.clone(),
+                capture_idx,
+            }),
+            _ => None,
+        })
 }
 
 fn far_pose(station: &Station) -> Option<Finding> {
@@ -192,8 +199,7 @@ fn differing_step(station: &Station) -> Option<Finding> {
         .enumerate()
         .filter_map(|(idx, pair)| {
             let step_mm = pair[1].step_mm?;
-            let moved =
-                pair[1].base_from_flange.translation_mm() - pair[0].base_from_flange.translation_mm();
+            let moved = pair[1].base_from_flange.translation_mm() - pair[0].base_from_flange.translation_mm();
             Some((idx + 1, step_mm, moved.norm()))
         })
         .map(|(capture_idx, step_mm, moved_mm)| (capture_idx, step_mm, moved_mm, (step_mm.abs() - moved_mm).abs()))
@@ -209,7 +215,12 @@ fn differing_step(station: &Station) -> Option<Finding> {
 
 /// Stations after this one with the same pose. For the plate and the point twins are as useless as for the ball.
 fn twins<'s>(station: &'s Station, later: &'s [Station]) -> impl Iterator<Item = Finding> + 's {
-    let first_pose = |station: &Station| station.captures.first().map(|capture| *capture.base_from_flange.rigid());
+    let first_pose = |station: &Station| {
+        station
+            .captures
+            .first()
+            .map(|capture| *capture.base_from_flange.rigid())
+    };
     let pose: Option<Rigid> = first_pose(station);
     later.iter().filter(|other| other.enabled).filter_map(move |other| {
         let (pose, other_pose) = (pose?, first_pose(other)?);
@@ -222,4 +233,149 @@ fn twins<'s>(station: &'s Station, later: &'s [Station]) -> impl Iterator<Item =
             angle_deg,
         })
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::geometry::{Profile, Transform, Vec3, so3};
+    use crate::session::format::parse;
+    use crate::session::model::UnknownFields;
+
+    /// Four stations with nothing odd about them.
+    fn session() -> Session {
+        let json = r#"{"format": "handeye-session", "version": 1, "target": {"kind": "ball", "radius_mm": 15},
+            "robot": {"position_std_mm": 0.02, "orientation_std_deg": 0.005}, "sensor": {"profile_std_mm": 0.01},
+            "stations": []}"#;
+        let mut session = parse(json.as_bytes(), "test").expect("valid");
+        for idx in 0..4 {
+            let capture = |y_mm: f64, step_mm| Capture {
+                base_from_flange: Transform::from_parts(
+                    Vec3::new(500.0, y_mm, 300.0),
+                    so3::exp(Vec3::x() * f64::from(idx)),
+                ),
+                reading: Reading::Profile(Arc::new(Profile::new(vec![0.0], &[Some(80.0)]).expect("valid"))),
+                step_mm,
+                unknown: UnknownFields::new(),
+            };
+            session.stations.push(Station {
+                label: format!("s{idx}"),
+                enabled: true,
+                side: crate::calibrate::SideChoice::Auto,
+                edge: None,
+                captures: vec![
+                    capture(0.0, None),
+                    capture(-0.5, Some(-0.5)),
+                    capture(-1.02, Some(-0.5)),
+                ],
+                unknown: UnknownFields::new(),
+            });
+        }
+        session
+    }
+
+    #[track_caller]
+    fn check(change: impl FnOnce(&mut Session), expected: &[Finding]) {
+        let mut session = session();
+        change(&mut session);
+        assert_eq!(findings(&session), expected);
+    }
+
+    #[test]
+    fn a_session_in_order_has_no_findings() {
+        check(|_| {}, &[]);
+    }
+
+    #[test]
+    fn the_session_as_a_whole() {
+        check(|session| session.stations.clear(), &[Finding::NoStations]);
+        check(
+            |session| session.stations[2].enabled = false,
+            &[Finding::FewStations {
+                num_enabled: 3,
+                needed: 4,
+            }],
+        );
+        check(
+            |session| {
+                session.robot.position_std_mm = None;
+                session.sensor.profile_std_mm = None;
+            },
+            &[Finding::NoiseNotGiven {
+                fields: vec!["sensor.profile_std_mm", "robot.position_std_mm"],
+            }],
+        );
+    }
+
+    #[test]
+    fn twins_are_found_unless_one_is_left_out() {
+        let make_twin = |session: &mut Session| session.stations[3].captures = session.stations[1].captures.clone();
+        check(
+            make_twin,
+            &[Finding::TwinStations {
+                label: "s1".to_owned(),
+                twin_label: "s3".to_owned(),
+                distance_mm: 0.0,
+                angle_deg: 0.0,
+            }],
+        );
+        check(
+            |session| {
+                make_twin(session);
+                session.stations[3].enabled = false;
+            },
+            &[Finding::FewStations {
+                num_enabled: 3,
+                needed: 4,
+            }],
+        );
+    }
+
+    #[test]
+    fn captures_that_are_empty_far_or_off_their_step() {
+        let label = || "s1".to_owned();
+        check(
+            |session| {
+                let empty = Profile::new(vec![0.0], &[None]).expect("valid");
+                session.stations[1].captures[2].reading = Reading::Profile(Arc::new(empty));
+            },
+            &[Finding::EmptyProfile {
+                label: label(),
+                capture_idx: 2,
+            }],
+        );
+        check(
+            |session| session.stations[1].captures[1].step_mm = Some(-0.75),
+            &[Finding::StepDiffersFromPose {
+                label: label(),
+                capture_idx: 1,
+                step_mm: -0.75,
+                moved_mm: 0.5,
+            }],
+        );
+        check(
+            |session| {
+                session.stations[1].captures.truncate(1);
+                let rotation = session.stations[1].captures[0].base_from_flange.rotation();
+                session.stations[1].captures[0].base_from_flange =
+                    Transform::from_parts(Vec3::new(0.0, 0.0, 20_000.0), rotation);
+            },
+            &[Finding::FarPose {
+                label: label(),
+                capture_idx: 0,
+                distance_mm: 20_000.0,
+            }],
+        );
+    }
+
+    #[test]
+    fn findings_name_their_station_and_a_code() {
+        let finding = Finding::EmptyProfile {
+            label: "7".to_owned(),
+            capture_idx: 0,
+        };
+        assert_eq!((finding.code(), finding.station_label()), ("empty-profile", Some("7")));
+    }
 }

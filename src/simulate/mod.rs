@@ -11,11 +11,14 @@ use crate::calibrate::{Mount, SideChoice};
 use crate::geometry::{Rigid, Transform, Vec3, so3};
 use crate::session::model::{Capture, Reading, Robot, Sensor, Session, Station, Target, Truth, UnknownFields};
 
-use path::{StationPath, World};
+use path::{Setup, StationPath};
 use random::Random;
-use scene::{Scene, rounded};
+use scene::{Scene, rounded, rounded_rotation};
 
 pub use options::{Dirt, SimulationOptions};
+
+/// Decimals of reported quaternions where positions and points are rounded: a thousand times finer than any robot is.
+const QUATERNION_DECIMALS: u8 = 9;
 
 /// Random streams, so that each kind of noise can be switched without a change to the others.
 mod stream {
@@ -33,9 +36,9 @@ mod stream {
 #[must_use]
 pub fn simulate(options: &SimulationOptions) -> Session {
     let options = options.within_limits();
-    let world = World::new(&options);
+    let setup = Setup::new(&options);
     let scene = Scene {
-        ball_in_world: world.ball_in_world,
+        ball_in_world: setup.ball_in_world,
         radius_mm: options.radius_mm,
         num_points: options.num_points,
         range_sign: if options.z_towards_sensor { -1.0 } else { 1.0 },
@@ -45,7 +48,7 @@ pub fn simulate(options: &SimulationOptions) -> Session {
     };
     let mut randoms = Randoms::new(options.seed);
     let stations = (0..options.num_stations)
-        .map(|station_idx| station(&options, &world, &scene, station_idx, &mut randoms))
+        .map(|station_idx| station(&options, &setup, &scene, station_idx, &mut randoms))
         .collect();
     let known = |std: f64| (std > 0.0).then_some(std);
     Session {
@@ -70,8 +73,8 @@ pub fn simulate(options: &SimulationOptions) -> Session {
         stations,
         published: None,
         truth: Some(Truth {
-            flange_from_sensor: Transform::from_rigid(world.carrier_from_sensor),
-            ball_in_base_mm: world.ball_in_world,
+            flange_from_sensor: Transform::from_rigid(setup.carrier_from_sensor),
+            ball_in_base_mm: setup.ball_in_world,
             unknown: UnknownFields::new(),
         }),
         unknown: UnknownFields::new(),
@@ -98,16 +101,16 @@ impl Randoms {
 
 fn station(
     options: &SimulationOptions,
-    world: &World,
+    setup: &Setup,
     scene: &Scene,
     station_idx: usize,
     randoms: &mut Randoms,
 ) -> Station {
-    let path = StationPath::new(options, world, station_idx, &mut randoms.path);
+    let path = StationPath::new(options, setup, station_idx, &mut randoms.path);
     let captures = (0..options.num_steps)
         .map(|capture_idx| {
             let world_from_sensor = path.world_from_sensor(capture_idx);
-            let world_from_carrier = world_from_sensor * world.carrier_from_sensor.inverse();
+            let world_from_carrier = world_from_sensor * setup.carrier_from_sensor.inverse();
             let true_base_from_flange = match options.mount {
                 Mount::OnFlange => world_from_carrier,
                 Mount::Fixed => world_from_carrier.inverse(),
@@ -152,6 +155,10 @@ fn reported(true_base_from_flange: &Rigid, options: &SimulationOptions, is_bad: 
         true_base_from_flange.rotation * so3::exp(orientation_error)
     } else {
         true_base_from_flange.rotation
+    };
+    let rotation = match options.decimals {
+        Some(_) => rounded_rotation(&rotation, QUATERNION_DECIMALS),
+        None => rotation,
     };
     Rigid::from_parts(position.map(|value| rounded(value, options.decimals)).into(), rotation)
 }

@@ -4,7 +4,10 @@ use crate::calibrate::Mount;
 
 /// What real profiles hold besides the ball.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[expect(clippy::struct_excessive_bools, reason = "independent switches, any of which may be on")]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "independent switches, any of which may be on"
+)]
 pub struct Dirt {
     /// The table below the ball.
     pub has_table: bool,

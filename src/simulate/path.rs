@@ -9,25 +9,28 @@ use crate::geometry::{Rigid, Vec3, so3};
 
 use super::options::SimulationOptions;
 use super::random::Random;
+use super::scene::rounded_rotation;
 
 /// Turns by this angle from station to station never line up (the golden angle).
 const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
+/// Decimals of the true mounting's quaternion.
+const MOUNTING_DECIMALS: u8 = 12;
 /// Distance of the ball's near surface along the range axis, about, mm.
 const STANDOFF_MM: f64 = 80.0;
 
-/// The world in which the ball stands still: what is mounted where, and where the ball is.
+/// What is mounted where, and where the ball is.
 ///
-/// On the flange, the *world* is the base and the *carrier* of the sensor is the flange. A fixed sensor is the same
-/// with the roles exchanged: the world is the flange, which holds the ball, and the carrier is the base.
+/// The *world* is what the ball stands still in, the *carrier* is what the sensor is mounted on. With the sensor on the
+/// flange these are the base and the flange; a fixed sensor is the same with the roles exchanged.
 #[derive(Clone, Debug)]
-pub(super) struct World {
+pub(super) struct Setup {
     pub carrier_from_sensor: Rigid,
     pub ball_in_world: Vec3,
     /// Orientation of the carrier at which the sensor looks at the ball along the world's −z.
     world_from_carrier_upright: UnitQuaternion<f64>,
 }
 
-impl World {
+impl Setup {
     pub fn new(options: &SimulationOptions) -> Self {
         let about = |axis: Vec3, angle: f64| so3::exp(axis * angle);
         // A mounting is never quite square.
@@ -38,12 +41,13 @@ impl World {
         } else {
             UnitQuaternion::identity()
         };
+        let mounting = |turn: UnitQuaternion<f64>| rounded_rotation(&(turn * odd_angles * flip), MOUNTING_DECIMALS);
         match options.mount {
             // Turned about the flange's z, the laser looks along it; straight down the flange is a half turn about x.
             Mount::OnFlange => Self {
                 carrier_from_sensor: Rigid::from_parts(
                     Translation3::new(12.0, -3.0, 118.0),
-                    about(Vec3::z(), FRAC_PI_2) * odd_angles * flip,
+                    mounting(about(Vec3::z(), FRAC_PI_2)),
                 ),
                 ball_in_world: Vec3::new(452.0, -118.0, 96.0),
                 world_from_carrier_upright: UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(
@@ -54,7 +58,7 @@ impl World {
             Mount::Fixed => Self {
                 carrier_from_sensor: Rigid::from_parts(
                     Translation3::new(820.0, 35.0, 410.0),
-                    about(Vec3::y(), -FRAC_PI_2) * odd_angles * flip,
+                    mounting(about(Vec3::y(), -FRAC_PI_2)),
                 ),
                 ball_in_world: Vec3::new(4.0, -7.0, 132.0),
                 world_from_carrier_upright: about(Vec3::y(), -FRAC_PI_2),
@@ -76,7 +80,7 @@ pub(super) struct StationPath {
 impl StationPath {
     /// The station of this index. The first one looks straight down; the rest tilt and turn about it.
     #[expect(clippy::cast_precision_loss, reason = "a session has far fewer than 2^52 stations")]
-    pub fn new(options: &SimulationOptions, world: &World, station_idx: usize, random: &mut Random) -> Self {
+    pub fn new(options: &SimulationOptions, setup: &Setup, station_idx: usize, random: &mut Random) -> Self {
         let turn = if station_idx == 0 {
             UnitQuaternion::identity()
         } else {
@@ -87,8 +91,7 @@ impl StationPath {
                 * so3::exp(Vec3::y() * tilt * azimuth.sin())
                 * so3::exp(Vec3::x() * tilt * azimuth.cos())
         };
-        let world_from_sensor_rotation =
-            turn * world.world_from_carrier_upright * world.carrier_from_sensor.rotation;
+        let world_from_sensor_rotation = turn * setup.world_from_carrier_upright * setup.carrier_from_sensor.rotation;
         let side = random.signed_unit().signum();
         let offset_mm = (options.section_offset_or_default_mm()
             * (1.0 + options.section_offset_spread * random.signed_unit()))
@@ -99,7 +102,7 @@ impl StationPath {
             side * offset_mm,
             range_sign * (STANDOFF_MM + options.radius_mm * (1.0 + 0.3 * random.signed_unit())),
         );
-        let origin_in_world = world.ball_in_world - world_from_sensor_rotation * ball_in_sensor;
+        let origin_in_world = setup.ball_in_world - world_from_sensor_rotation * ball_in_sensor;
         let off_normal = options.travel_off_normal_deg.to_radians();
         // Off towards x and z alike, the same at every station: the robot's Y is not quite the laser's normal.
         let aside = Vec3::new(0.8, 0.0, 0.6);

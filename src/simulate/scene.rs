@@ -1,5 +1,7 @@
 //! What a laser line sees: the ball, and the table below it.
 
+use nalgebra::{Quaternion, UnitQuaternion};
+
 use crate::geometry::{Profile, Rigid, Vec3};
 
 use super::options::Dirt;
@@ -51,8 +53,12 @@ struct Hit {
 impl Scene {
     /// The profile of a sensor standing at `world_from_sensor`.
     pub fn profile(&self, world_from_sensor: &Rigid, noise: &mut Random, dirt: &mut Random) -> Profile {
-        let ball_in_sensor = world_from_sensor.inverse_transform_point(&self.ball_in_world.into()).coords;
-        let x_mm: Vec<f64> = (0..self.num_points).map(|idx| self.rounded(self.grid_x_mm(idx))).collect();
+        let ball_in_sensor = world_from_sensor
+            .inverse_transform_point(&self.ball_in_world.into())
+            .coords;
+        let x_mm: Vec<f64> = (0..self.num_points)
+            .map(|idx| self.rounded(self.grid_x_mm(idx)))
+            .collect();
         let mut z_mm: Vec<Option<f64>> = x_mm
             .iter()
             .map(|x| {
@@ -116,7 +122,11 @@ impl Scene {
         let steepness = hit.incidence_deg.map_or(0.0, |incidence_deg| {
             ((incidence_deg - BIASED_INCIDENCE_DEG) / (MAX_INCIDENCE_DEG - BIASED_INCIDENCE_DEG)).clamp(0.0, 1.0)
         });
-        if self.dirt.has_flank_bias { -self.range_sign * FLANK_BIAS_MM * steepness * steepness } else { 0.0 }
+        if self.dirt.has_flank_bias {
+            -self.range_sign * FLANK_BIAS_MM * steepness * steepness
+        } else {
+            0.0
+        }
     }
 
     fn rounded(&self, value: f64) -> f64 {
@@ -130,6 +140,14 @@ pub(super) fn rounded(value: f64, decimals: Option<u8>) -> f64 {
         let scale = 10.0_f64.powi(i32::from(decimals));
         (value * scale).round() / scale
     })
+}
+
+/// A rotation whose quaternion was rounded to so many decimals and normalised again.
+///
+/// The last bits of sines and cosines differ between systems; after rounding the same seed gives the same file.
+pub(super) fn rounded_rotation(rotation: &UnitQuaternion<f64>, decimals: u8) -> UnitQuaternion<f64> {
+    let quaternion = rotation.as_ref().coords.map(|value| rounded(value, Some(decimals)));
+    UnitQuaternion::new_normalize(Quaternion::from_vector(quaternion))
 }
 
 fn add_spikes(z_mm: &mut [Option<f64>], dirt: &mut Random) {
@@ -163,7 +181,10 @@ fn add_holes(z_mm: &mut [Option<f64>], dirt: &mut Random) {
     }
 }
 
-#[expect(clippy::expect_used, reason = "the options' limits keep every point within a profile's")]
+#[expect(
+    clippy::expect_used,
+    reason = "the options' limits keep every point within a profile's"
+)]
 fn checked_profile(x_mm: Vec<f64>, z_mm: &[Option<f64>]) -> Profile {
     Profile::new(x_mm, z_mm).expect("simulated points are finite and within reach")
 }

@@ -12,6 +12,8 @@ use crate::geometry::{Mat3, Rigid, Vec3};
 
 /// A cost below this a station is rounding, mm².
 const ROUNDING: f64 = 1e-16;
+/// Beyond this many open stations pairs are left alone: with that many, single flips are enough.
+const MAX_PAIR_FLIPS: usize = 12;
 /// Weight of y = 0 ± R/2 beside x and z, which are a hundred times better known.
 const WEIGHT_OF_Y: f64 = 1e-4;
 /// Rotations nearer than this are the same minimum.
@@ -96,7 +98,13 @@ pub(super) fn resolve_sides(
         for start in resolver.starts_without_y() {
             resolver.keep_new(&mut finals, start);
         }
+        // The mirror image of the truth is a minimum that no single flip leaves.
+        for mirrored in finals.iter().map(|assignment| resolver.mirrored(assignment)).collect::<Vec<_>>() {
+            resolver.keep_new(&mut finals, mirrored);
+        }
     }
+    let paired: Vec<Assignment> = finals.iter().map(|assignment| resolver.flip_pairs(assignment.clone())).collect();
+    finals = paired;
     finals.sort_by(|a, b| a.minimum.cost.total_cmp(&b.minimum.cost));
     let others = finals.split_off(1);
     let best = finals.swap_remove(0);
@@ -200,6 +208,26 @@ impl Resolver<'_> {
         assignment
     }
 
+    /// Flips two stations at once while the cost falls: single flips may all lead uphill.
+    fn flip_pairs(&self, mut assignment: Assignment) -> Assignment {
+        let open: Vec<usize> = (0..self.candidates.len()).filter(|idx| self.candidates[*idx].is_open()).collect();
+        if open.len() > MAX_PAIR_FLIPS || self.fits_well(&assignment) {
+            return assignment;
+        }
+        loop {
+            let pairs = open.iter().enumerate().flat_map(|(at, first)| open[at + 1..].iter().map(|second| (*first, *second)));
+            let best = pairs
+                .map(|(first, second)| self.flipped(&self.flipped(&assignment, first), second))
+                .min_by(|a, b| a.minimum.cost.total_cmp(&b.minimum.cost));
+            match best {
+                Some(flipped) if flipped.minimum.cost < assignment.minimum.cost => {
+                    assignment = self.flip_singly(flipped);
+                }
+                _ => return assignment,
+            }
+        }
+    }
+
     /// Flips single stations while the cost falls.
     fn flip_singly(&self, mut assignment: Assignment) -> Assignment {
         if self.candidates.len() > MAX_SINGLE_FLIPS || self.fits_well(&assignment) {
@@ -215,6 +243,18 @@ impl Resolver<'_> {
                 _ => return assignment,
             }
         }
+    }
+
+    /// All open stations on the other side, with the rotation sought anew.
+    fn mirrored(&self, assignment: &Assignment) -> Assignment {
+        let sides: Vec<Side> = self
+            .candidates
+            .iter()
+            .zip(&assignment.sides)
+            .map(|(candidate, side)| if candidate.is_open() { side.flipped() } else { *side })
+            .collect();
+        let minimum = self.poses.reduced(&self.centres(&sides)).best_minimum();
+        Assignment { sides, minimum }
     }
 
     fn flipped(&self, assignment: &Assignment, idx: usize) -> Assignment {

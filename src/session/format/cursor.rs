@@ -63,7 +63,11 @@ impl<'a> Cursor<'a> {
     /// A refusal of this value for a reason that its own text does not show.
     pub fn refuse_as(&self, found: impl Into<String>, expected: impl Into<String>) -> Refusal {
         Refusal {
-            path: if self.path.is_empty() { "top level".to_owned() } else { self.path.clone() },
+            path: if self.path.is_empty() {
+                "top level".to_owned()
+            } else {
+                self.path.clone()
+            },
             found: found.into(),
             expected: expected.into(),
         }
@@ -95,9 +99,12 @@ impl<'a> Cursor<'a> {
         };
         match &*self.node {
             Node::List(nodes) => Ok(nodes.iter().map(Cow::Borrowed).enumerate().map(element).collect()),
-            Node::Numbers(numbers) => {
-                Ok(numbers.iter().map(|number| Cow::Owned(node_of(*number))).enumerate().map(element).collect())
-            }
+            Node::Numbers(numbers) => Ok(numbers
+                .iter()
+                .map(|number| Cow::Owned(node_of(*number)))
+                .enumerate()
+                .map(element)
+                .collect()),
             _ => Err(self.refuse(expected)),
         }
     }
@@ -145,7 +152,11 @@ impl<'a> Cursor<'a> {
                     .position(|node| is_stranger(node) && !matches!(node, Node::Null | Node::Number(_)))
                     .or_else(|| nodes.iter().position(is_stranger))
                     .unwrap_or(0);
-                Err(self.refuse_element(index, nodes.get(index).map_or_else(String::new, Node::described), expected))
+                Err(self.refuse_element(
+                    index,
+                    nodes.get(index).map_or_else(String::new, Node::described),
+                    expected,
+                ))
             }
             _ => Err(self.refuse(expected)),
         }
@@ -197,7 +208,11 @@ pub(super) struct Object<'a> {
 
 impl<'a> Object<'a> {
     pub fn path_of(&self, name: &str) -> String {
-        if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
+        if self.path.is_empty() {
+            name.to_owned()
+        } else {
+            format!("{}.{name}", self.path)
+        }
     }
 
     pub fn optional(&self, name: &str) -> Option<Cursor<'a>> {
@@ -221,7 +236,8 @@ impl<'a> Object<'a> {
 
     /// Text, empty where the field is absent.
     pub fn text_or_empty(&self, name: &str) -> Result<String, Refusal> {
-        self.optional(name).map_or_else(|| Ok(String::new()), |cursor| cursor.text("text").map(str::to_owned))
+        self.optional(name)
+            .map_or_else(|| Ok(String::new()), |cursor| cursor.text("text").map(str::to_owned))
     }
 
     /// A number, if the field is there.

@@ -60,7 +60,11 @@ pub fn load_with_notes(path: &Path) -> Result<Loaded, SessionError> {
     let metadata = fs::metadata(path).map_err(unreadable)?;
     if !metadata.is_file() {
         return Err(SessionError::NotAFile {
-            found: if metadata.is_dir() { "a folder" } else { "a device or pipe" },
+            found: if metadata.is_dir() {
+                "a folder"
+            } else {
+                "a device or pipe"
+            },
             file,
         });
     }
@@ -110,7 +114,9 @@ pub fn parse_with_notes(bytes: &[u8], origin: &str) -> Result<Loaded, SessionErr
         expected: refusal.expected,
     };
     let root_cursor = Cursor::root(&tree);
-    let root = root_cursor.object("a session, an object like {\"format\": \"handeye-session\", …}").map_err(invalid)?;
+    let root = root_cursor
+        .object("a session, an object like {\"format\": \"handeye-session\", …}")
+        .map_err(invalid)?;
     let format = root.required("format", &quoted(names::FORMAT)).map_err(invalid)?;
     format.one_of(&[(names::FORMAT, ())]).map_err(invalid)?;
     let version_expected = format!("the version of the format, a whole number from 1 to {VERSION}");
@@ -140,7 +146,10 @@ fn file_name(path: &Path) -> String {
 }
 
 fn line_and_column(before: &[u8]) -> (usize, usize) {
-    let line_start = before.iter().rposition(|byte| *byte == b'\n').map_or(0, |newline| newline + 1);
+    let line_start = before
+        .iter()
+        .rposition(|byte| *byte == b'\n')
+        .map_or(0, |newline| newline + 1);
     let num_newlines = before.split(|byte| *byte == b'\n').count() - 1;
     (num_newlines + 1, before.len() - line_start + 1)
 }
@@ -150,13 +159,18 @@ fn syntax_error(file: String, text: &str, error: &serde_json::Error) -> SessionE
     const CONTEXT_CHARS: usize = 24;
     let (line, column) = (error.line(), error.column());
     let message = error.to_string();
-    let problem = message.strip_suffix(&format!(" at line {line} column {column}")).unwrap_or(&message);
+    let problem = message
+        .strip_suffix(&format!(" at line {line} column {column}"))
+        .unwrap_or(&message);
     let found = if error.is_eof() {
         "the end of the file".to_owned()
     } else {
         // The column counts bytes up to and including the offending one; it may stand inside a character.
         let line_text = text.lines().nth(line.saturating_sub(1)).unwrap_or_default();
-        let start = (0..column).rev().find(|byte| line_text.is_char_boundary(*byte)).unwrap_or_default();
+        let start = (0..column)
+            .rev()
+            .find(|byte| line_text.is_char_boundary(*byte))
+            .unwrap_or_default();
         let rest = line_text.get(start..).unwrap_or_default();
         match rest.chars().take(CONTEXT_CHARS).collect::<String>() {
             context if context.is_empty() => "the end of the line".to_owned(),

@@ -36,7 +36,11 @@ fn replace_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => None,
         Err(error) => return Err(error),
     };
-    let target = if existing.is_some() { fs::canonicalize(path)? } else { path.to_path_buf() };
+    let target = if existing.is_some() {
+        fs::canonicalize(path)?
+    } else {
+        path.to_path_buf()
+    };
     let folder = match target.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent.to_path_buf(),
         _ => PathBuf::from("."),

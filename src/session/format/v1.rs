@@ -75,12 +75,19 @@ pub(super) fn session(root: &Object<'_>, mended: &mut Mended) -> Result<Session,
     Ok(Session {
         name: root.text_or_empty("name")?,
         notes: root.text_or_empty("notes")?,
-        robot: root.optional("robot").map_or_else(|| Ok(Robot::default()), |cursor| robot(&cursor))?,
-        sensor: root.optional("sensor").map_or_else(|| Ok(Sensor::default()), |cursor| sensor(&cursor))?,
+        robot: root
+            .optional("robot")
+            .map_or_else(|| Ok(Robot::default()), |cursor| robot(&cursor))?,
+        sensor: root
+            .optional("sensor")
+            .map_or_else(|| Ok(Sensor::default()), |cursor| sensor(&cursor))?,
         mount: root.optional("mount").map_or(Ok(Mount::default()), |cursor| {
             cursor.one_of(&[(names::ON_FLANGE, Mount::OnFlange), (names::FIXED, Mount::Fixed)])
         })?,
-        published: root.optional("published").map(|cursor| published(&cursor, stations.len())).transpose()?,
+        published: root
+            .optional("published")
+            .map(|cursor| published(&cursor, stations.len()))
+            .transpose()?,
         target,
         stations,
         truth,
@@ -92,9 +99,10 @@ fn robot(cursor: &Cursor<'_>) -> Result<Robot, Refusal> {
     let object = cursor.object("an object that describes the robot")?;
     Ok(Robot {
         model: object.text_or_empty("model")?,
-        pose_convention: object
-            .optional("pose_convention")
-            .map_or_else(|| Ok(PoseConvention::default_convention()), |cursor| convention(&cursor))?,
+        pose_convention: object.optional("pose_convention").map_or_else(
+            || Ok(PoseConvention::default_convention()),
+            |cursor| convention(&cursor),
+        )?,
         position_std_mm: object.optional_number("position_std_mm", &limits::LENGTH_STD_MM)?,
         orientation_std_deg: object.optional_number("orientation_std_deg", &limits::ORIENTATION_STD_DEG)?,
         unknown: object.unknown(names::ROBOT),
@@ -120,7 +128,9 @@ fn target(root: &Object<'_>) -> Result<(Target, UnknownFields), Refusal> {
     let expected = "an object like {\"kind\": \"ball\", \"radius_mm\": 15}";
     let cursor = root.required("target", expected)?;
     let object = cursor.object(expected)?;
-    let kind = object.required("kind", &listed(KINDS.iter().map(|(word, _)| *word)))?.one_of(KINDS)?;
+    let kind = object
+        .required("kind", &listed(KINDS.iter().map(|(word, _)| *word)))?
+        .one_of(KINDS)?;
     let target = match kind {
         Kind::Ball => {
             let radius = object.required("radius_mm", &limits::BALL_RADIUS_MM.to_string())?;
@@ -168,7 +178,10 @@ fn stations(root: &Object<'_>, target: &Target, mended: &mut Mended) -> Result<V
         if let Some(first_idx) = station_of_label.insert(station.label.clone(), station_idx) {
             return Err(Refusal {
                 path: format!("{}.label", element.path()),
-                found: format!("{}, which stations[{first_idx}] has too", super::tree::quoted(&station.label)),
+                found: format!(
+                    "{}, which stations[{first_idx}] has too",
+                    super::tree::quoted(&station.label)
+                ),
                 expected: "a label of its own for each station".to_owned(),
             });
         }
@@ -177,19 +190,16 @@ fn stations(root: &Object<'_>, target: &Target, mended: &mut Mended) -> Result<V
     Ok(stations)
 }
 
-fn station(
-    cursor: &Cursor<'_>,
-    station_idx: usize,
-    target: &Target,
-    mended: &mut Mended,
-) -> Result<Station, Refusal> {
+fn station(cursor: &Cursor<'_>, station_idx: usize, target: &Target, mended: &mut Mended) -> Result<Station, Refusal> {
     let object = cursor.object("an object with the captures of a station")?;
     let edges = [("p", Edge::P), ("q", Edge::Q)];
     let edge = match object.optional("edge") {
         Some(cursor) => Some(cursor.one_of(&edges)?),
-        None if *target == Target::RightAnglePlate => {
-            Some(object.required("edge", "\"p\" or \"q\": the edge of the plate that this station saw")?.one_of(&edges)?)
-        }
+        None if *target == Target::RightAnglePlate => Some(
+            object
+                .required("edge", "\"p\" or \"q\": the edge of the plate that this station saw")?
+                .one_of(&edges)?,
+        ),
         None => None,
     };
     let captures = object.required("captures", "a list of at least one capture")?;
@@ -208,7 +218,10 @@ fn station(
             ])
         })?,
         edge,
-        captures: elements.iter().map(|element| capture(element, mended)).collect::<Result<_, _>>()?,
+        captures: elements
+            .iter()
+            .map(|element| capture(element, mended))
+            .collect::<Result<_, _>>()?,
         unknown: object.unknown(names::STATION),
     })
 }
@@ -247,14 +260,23 @@ fn capture(cursor: &Cursor<'_>, mended: &mut Mended) -> Result<Capture, Refusal>
 fn profile(cursor: &Cursor<'_>, unknown: &mut UnknownFields) -> Result<Profile, Refusal> {
     let object = cursor.object("an object with x_mm and z_mm")?;
     object.keep_unknown_in(unknown, "profile", names::PROFILE);
-    let (x_expected, z_expected) = ("a list of numbers in mm", "a list of numbers in mm, null for a missing point");
-    let (x_cursor, z_cursor) = (object.required("x_mm", x_expected)?, object.required("z_mm", z_expected)?);
+    let (x_expected, z_expected) = (
+        "a list of numbers in mm",
+        "a list of numbers in mm, null for a missing point",
+    );
+    let (x_cursor, z_cursor) = (
+        object.required("x_mm", x_expected)?,
+        object.required("z_mm", z_expected)?,
+    );
     let x_mm = x_cursor.numbers_or_null(x_expected)?;
     if let Some(index) = x_mm.iter().position(|x| x.is_nan()) {
         return Err(x_cursor.refuse_element(index, "null", "a number in mm: only z may be missing"));
     }
-    let z_mm: Vec<Option<f64>> =
-        z_cursor.numbers_or_null(z_expected)?.iter().map(|z| (!z.is_nan()).then_some(*z)).collect();
+    let z_mm: Vec<Option<f64>> = z_cursor
+        .numbers_or_null(z_expected)?
+        .iter()
+        .map(|z| (!z.is_nan()).then_some(*z))
+        .collect();
     Profile::new(x_mm.to_vec(), &z_mm).map_err(|error| match error {
         ProfileError::LengthMismatch { num_x, .. } => {
             z_cursor.refuse(format!("a list of {num_x}, as many as x_mm has"))
@@ -277,8 +299,9 @@ fn pose<Dst: Frame, Src: Frame>(
     let cursor = parent.required(name, expected)?;
     let object = cursor.object(expected)?;
     object.keep_unknown_in(unknown, name, names::POSE);
-    let translation_mm =
-        object.required("translation_mm", "a list of 3 numbers in mm")?.vec3(&limits::POSITION_MM)?;
+    let translation_mm = object
+        .required("translation_mm", "a list of 3 numbers in mm")?
+        .vec3(&limits::POSITION_MM)?;
     let rotation = match (object.optional("quaternion_wxyz"), object.optional("euler_deg")) {
         (Some(cursor), None) => quaternion(&cursor, mended)?,
         (None, Some(cursor)) => {
@@ -318,13 +341,19 @@ fn quaternion(cursor: &Cursor<'_>, mended: &mut Mended) -> Result<UnitQuaternion
 
 /// Of the two quaternions of a rotation the one with `w ≥ 0`, as it will be saved.
 fn upper_half(rotation: UnitQuaternion<f64>) -> UnitQuaternion<f64> {
-    if rotation.w < 0.0 { UnitQuaternion::new_unchecked(-rotation.into_inner()) } else { rotation }
+    if rotation.w < 0.0 {
+        UnitQuaternion::new_unchecked(-rotation.into_inner())
+    } else {
+        rotation
+    }
 }
 
 fn published(cursor: &Cursor<'_>, num_stations: usize) -> Result<Published, Refusal> {
     let object = cursor.object("an object with what a paper printed")?;
     let rows = |name: &str, quantity: &Quantity| {
-        let Some(cursor) = object.optional(name) else { return Ok(Vec::new()) };
+        let Some(cursor) = object.optional(name) else {
+            return Ok(Vec::new());
+        };
         let elements = cursor.elements("a list of points, one a station")?;
         if elements.len() != num_stations && !elements.is_empty() {
             return Err(cursor.refuse(format!("a list of {num_stations}, one a station")));
@@ -342,7 +371,13 @@ fn published(cursor: &Cursor<'_>, num_stations: usize) -> Result<Published, Refu
 /// The truth; with a fixed sensor its fields are named after the frames that they are in, and either name is read.
 fn truth(cursor: &Cursor<'_>, mended: &mut Mended) -> Result<Truth, Refusal> {
     let object = cursor.object("an object with the true calibration")?;
-    let present = |fixed, on_flange| if object.optional(fixed).is_some() { fixed } else { on_flange };
+    let present = |fixed, on_flange| {
+        if object.optional(fixed).is_some() {
+            fixed
+        } else {
+            on_flange
+        }
+    };
     let pose_name = present("base_from_sensor", "flange_from_sensor");
     let ball_name = present("ball_in_flange_mm", "ball_in_base_mm");
     let mut unknown = object.unknown(names::TRUTH);

@@ -1,0 +1,128 @@
+//! The commands as a shell sees them: output, error line, exit status.
+
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn handeye(args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_handeye"))
+        .args(args)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .env_remove("DISPLAY")
+        .env_remove("WAYLAND_DISPLAY")
+        .env_remove("WAYLAND_SOCKET")
+        .output()
+        .expect("the binary starts")
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).expect("UTF-8")
+}
+
+/// Exit status 2 or 3 with exactly one line on standard error that holds all the fragments.
+#[track_caller]
+fn check_refusal(args: &[&str], status: i32, fragments: &[&str]) {
+    let output = handeye(args);
+    let line = String::from_utf8(output.stderr.clone()).expect("UTF-8");
+    assert_eq!(output.status.code(), Some(status), "{args:?}: {line}");
+    assert_eq!(line.trim_end().lines().count(), 1, "{line}");
+    for fragment in fragments {
+        assert!(line.contains(fragment), "{fragment:?} is not in {line:?}");
+    }
+}
+
+#[test]
+fn the_result_file_has_the_names_that_programs_rely_on() {
+    let output = handeye(&["solve", "sample_sessions/clean-sweeps.json", "--json"]);
+    assert_eq!(output.status.code(), Some(0));
+    let result: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(result["format"], "handeye-result");
+    assert_eq!(result["version"], 1);
+    let methods = result["methods"].as_array().expect("a list");
+    let ids: Vec<&str> = methods.iter().filter_map(|method| method["method"].as_str()).collect();
+    assert_eq!(ids, ["ball-fixed-point", "ball-max-arc-step", "ball-max-arc", "ball-bundle"]);
+    for method in methods {
+        assert_eq!(method["status"], "ok");
+        assert_eq!(method["flange_from_sensor"]["matrix"].as_array().map(Vec::len), Some(4));
+        assert_eq!(method["uncertainty"]["covariance"].as_array().map(Vec::len), Some(6));
+        for name in ["scatter_mm", "leave_one_out_mm"] {
+            assert!(method[name]["rms"].as_f64().is_some_and(|rms| rms > 0.0), "{name}");
+        }
+        let station = &method["stations"][1];
+        assert_eq!(station["used"], true);
+        for name in ["target_in_sensor_mm", "target_in_base_mm", "error_from_first_mm", "error_from_mean_mm"] {
+            assert_eq!(station[name].as_array().map(Vec::len), Some(3), "{name}");
+        }
+    }
+}
+
+#[test]
+fn table_1_of_the_paper_is_reproduced_and_its_misprints_pointed_out() {
+    let output = handeye(&["solve", "sample_sessions/lin-mu-2019-table-1.json", "--paper-tables"]);
+    assert_eq!(output.status.code(), Some(0));
+    let text = stdout(&output);
+    for fragment in [
+        "RMS 0.309 mm",
+        "about (328.6, -48.2, 137.3)",
+        "row 2, y: printed 0.211, but the printed centres give -0.211",
+        "row 2, z: printed -0.090, but the printed centres give -0.010",
+        "largest coordinate of the recomputed error: 0.2110 mm",
+    ] {
+        assert!(text.contains(fragment), "{fragment:?} is not in\n{text}");
+    }
+    assert_eq!(text.matches("but the printed centres give").count(), 2, "{text}");
+}
+
+#[test]
+fn table_2_of_the_paper_has_its_printed_errors_and_no_misprint() {
+    let output = handeye(&["solve", "sample_sessions/lin-mu-2019-table-2.json", "--paper-tables"]);
+    let text = stdout(&output);
+    assert!(text.contains("largest coordinate of the recomputed error: 0.0815 mm"), "{text}");
+    assert!(!text.contains("misprint"), "{text}");
+}
+
+#[test]
+fn methods_that_cannot_run_say_why_and_others_go_on() {
+    let output = handeye(&["solve", "sample_sessions/near-largest-arc.json"]);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(stdout(&output).contains("found 0 stations with a sweep"), "{}", stdout(&output));
+    check_refusal(
+        &["solve", "sample_sessions/near-largest-arc.json", "--method", "ball-max-arc"],
+        3,
+        &["nothing could be computed", "ball-max-arc", "found 0 stations with a sweep"],
+    );
+}
+
+#[test]
+fn wrong_input_is_refused_in_one_line() {
+    check_refusal(&["solve", "no-such-file.json"], 2, &["no-such-file.json"]);
+    check_refusal(&["check", "Cargo.toml"], 2, &["Cargo.toml", "line 1"]);
+    check_refusal(&["solve", "src"], 2, &["src"]);
+    check_refusal(&["simulate", "--out", "x.json", "--target", "plate"], 2, &["plate"]);
+}
+
+#[test]
+fn without_a_display_the_window_says_what_works_without_one() {
+    check_refusal(&[], 2, &["display", "solve", "report"]);
+    check_refusal(&["sample_sessions/clean-sweeps.json"], 2, &["display"]);
+}
+
+#[test]
+fn a_simulated_session_is_solved_close_to_its_truth() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("simulated.json");
+    let path = file.to_str().expect("UTF-8");
+    let output = handeye(&["simulate", "--out", path, "--seed", "5", "--stations", "6", "--points", "100"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(handeye(&["check", path]).status.code(), Some(0));
+    let result = handeye(&["solve", path, "--json", "--method", "ball-bundle"]);
+    let result: Value = serde_json::from_slice(&result.stdout).expect("JSON");
+    let session: Value = serde_json::from_slice(&std::fs::read(&file).expect("written")).expect("JSON");
+    let found = &result["methods"][0]["flange_from_sensor"]["translation_mm"];
+    let truth = &session["truth"]["flange_from_sensor"]["translation_mm"];
+    for axis in 0..3 {
+        let difference = found[axis].as_f64().expect("a number") - truth[axis].as_f64().expect("a number");
+        // Six stations with the default noise know the translation to a tenth of a millimetre.
+        assert!(difference.abs() < 0.5, "axis {axis}: {difference} mm");
+    }
+}

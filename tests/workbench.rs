@@ -1,0 +1,106 @@
+//! The workbench without a window: from a file to results, edits, undo, and back to a file.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, sync_channel};
+
+use handeye::app::{Command, NoticeKind, Workbench};
+use handeye::calibrate::{Method, Verdict, verdict::judge};
+use handeye::session;
+
+struct Bench {
+    workbench: Workbench,
+    woken: Receiver<()>,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let (sender, woken) = sync_channel(64);
+        let wake = move || {
+            sender.try_send(()).ok();
+        };
+        Self { workbench: Workbench::new(Arc::new(wake)), woken }
+    }
+
+    /// Applies a command and waits until all work it caused is done.
+    fn apply(&mut self, command: Command) {
+        self.workbench.apply(command);
+        while self.workbench.is_busy() {
+            self.woken.recv().expect("workers wake the bench");
+            self.workbench.poll();
+        }
+    }
+
+    fn translation(&self) -> [f64; 3] {
+        let results = self.workbench.results().expect("solved");
+        let solution = results.method(Method::BallBundle).expect("run").outcome.as_ref().expect("solved");
+        solution.flange_from_sensor.translation_mm().into()
+    }
+}
+
+fn sample(name: &str) -> usize {
+    session::samples::ALL.iter().position(|sample| sample.file_name == name).expect("a sample")
+}
+
+#[test]
+fn leaving_a_station_out_solves_again_and_undo_brings_the_old_result_back() {
+    let mut bench = Bench::new();
+    bench.apply(Command::OpenSample(sample("one-bad-pose.json")));
+    let before = bench.translation();
+    let verdict = |bench: &Bench| {
+        let results = bench.workbench.results().expect("solved");
+        judge(results.method(Method::BallBundle).expect("run").outcome.as_ref().expect("solved")).0
+    };
+    assert_eq!(verdict(&bench), Verdict::NotUsable);
+    bench.apply(Command::SetStationEnabled { station_idx: 6, enabled: false });
+    assert!(bench.workbench.results_are_current());
+    assert_eq!(verdict(&bench), Verdict::Good);
+    let document = bench.workbench.document().expect("open");
+    assert!(document.is_unsaved());
+    assert_eq!(document.history.undo_label(), Some("leave out station 7"));
+    bench.apply(Command::Undo);
+    assert_eq!(bench.translation(), before);
+    assert!(!bench.workbench.document().expect("open").is_unsaved());
+    bench.apply(Command::Redo);
+    assert_eq!(verdict(&bench), Verdict::Good);
+}
+
+#[test]
+fn an_edit_that_changes_nothing_is_no_edit() {
+    let mut bench = Bench::new();
+    bench.apply(Command::OpenSample(sample("clean-sweeps.json")));
+    let revision = bench.workbench.document().expect("open").revision;
+    bench.apply(Command::SetStationEnabled { station_idx: 0, enabled: true });
+    let document = bench.workbench.document().expect("open");
+    assert_eq!((document.revision, document.history.undo_label()), (revision, None));
+}
+
+#[test]
+fn saving_under_another_name_makes_that_the_documents_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("saved.json");
+    let mut bench = Bench::new();
+    bench.apply(Command::OpenSample(sample("lin-mu-2019-table-1.json")));
+    bench.apply(Command::Save);
+    let notice = bench.workbench.notices().last().expect("told");
+    assert_eq!(notice.kind, NoticeKind::Error);
+    bench.apply(Command::SetStationEnabled { station_idx: 1, enabled: false });
+    bench.apply(Command::SaveAs(path.clone()));
+    let document = bench.workbench.document().expect("open");
+    assert_eq!(document.path.as_deref(), Some(path.as_path()));
+    assert!(!document.is_unsaved());
+    assert_eq!(session::load(&path).as_ref(), Ok(&*document.session));
+}
+
+#[test]
+fn a_file_that_cannot_be_opened_leaves_the_session_on_the_bench() {
+    let mut bench = Bench::new();
+    bench.apply(Command::OpenSample(sample("clean-sweeps.json")));
+    bench.apply(Command::Open(Path::new("no-such-folder/no-such-file.json").to_owned()));
+    let notice = bench.workbench.notices().last().expect("told");
+    assert_eq!(notice.kind, NoticeKind::Error);
+    // The window shows the sentence that the command prints.
+    let error = session::load(Path::new("no-such-folder/no-such-file.json")).expect_err("missing");
+    assert_eq!(notice.message, error.to_string());
+    assert!(bench.workbench.document().is_some());
+}
