@@ -1,6 +1,8 @@
 //! One card a method: its name and figures, then its table or the reason why there is none.
 
-use egui::{Align, Align2, Checkbox, Color32, Frame, Layout, Margin, Rect, Role, Sense, Ui, UiBuilder, WidgetInfo, vec2};
+use egui::{
+    Align, Align2, Checkbox, Color32, Frame, Layout, Margin, Rect, Role, Sense, Ui, UiBuilder, WidgetInfo, vec2,
+};
 
 use crate::app::Command;
 use crate::calibrate::{Method, Mount};
@@ -41,24 +43,29 @@ pub fn show(
 ) {
     let top = ui.cursor().min;
     let width = ui.available_width();
-    widgets::card(ui, "", |_| {}, |ui| {
-        ui.spacing_mut().item_spacing.y = 0.0;
-        head(ui, column, options.reference, selection);
-        match &column.outcome {
-            Ok(table) => {
-                if options.has_paper_layout {
-                    paper::show(ui, column.method, table, options.reference, selection, commands);
-                } else {
-                    plain(ui, column.method, table, options.reference, selection, commands);
+    widgets::card(
+        ui,
+        "",
+        |_| {},
+        |ui| {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            head(ui, column, options.reference, selection);
+            match &column.outcome {
+                Ok(table) => {
+                    if options.has_paper_layout {
+                        paper::show(ui, column.method, table, options.reference, selection, commands);
+                    } else {
+                        plain(ui, column.method, table, options.reference, selection, commands);
+                    }
+                    footer(ui, table);
+                    if options.has_matrix {
+                        matrix(ui, table);
+                    }
                 }
-                footer(ui, table);
-                if options.has_matrix {
-                    matrix(ui, table);
-                }
+                Err(reason) => refused(ui, reason),
             }
-            Err(reason) => refused(ui, reason),
-        }
-    });
+        },
+    );
     let edge = Rect::from_min_size(top, vec2(width, EDGE_HEIGHT));
     ui.painter().rect_filled(edge, 0.0, theme::method_color(column.method));
 }
@@ -216,10 +223,8 @@ fn footer(ui: &mut Ui, table: &MethodTable) {
     let mut row = RowCells::new(ui, theme::ROW_HEIGHT);
     let width = row.rect().width();
     row.head(width * 0.36, text::FROM_TRUTH, Align2::LEFT_CENTER);
-    let figures = text::truth_figures(
-        &coordinate(truth.workspace_point_mm),
-        &widgets::fixed(truth.rotation_rad.to_degrees(), 3),
-    );
+    let figures =
+        text::truth_figures(&coordinate(truth.workspace_point_mm), &widgets::fixed(truth.rotation_rad.to_degrees(), 3));
     let color = theme::palette(row.ui()).text;
     row.word(width * 0.64, &figures, color);
 }
