@@ -133,9 +133,12 @@ pub const fn method_color(method: Method) -> Color32 {
     }
 }
 
-/// A darker shade of the method's colour, with enough contrast for text on a light ground.
+/// A shade of the method's colour with enough contrast for text: darker on a light ground, lighter on a dark one.
 #[must_use]
-pub const fn method_text_color(method: Method) -> Color32 {
+pub fn method_text_color(ui: &egui::Ui, method: Method) -> Color32 {
+    if ui.visuals().dark_mode {
+        return method_color(method).lerp_to_gamma(Color32::WHITE, 0.4);
+    }
     match method {
         Method::BallFixedPoint => method_color(method),
         Method::BallMaxArcStep => Color32::from_rgb(0x66, 0x66, 0x66),
