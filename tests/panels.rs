@@ -1,4 +1,5 @@
 //! The arcs and the comparison panel alone, driven by the names that screen readers see.
+#![expect(clippy::expect_used, reason = "helpers of tests may fail as tests do")]
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, sync_channel};
@@ -79,10 +80,8 @@ impl Bench {
     }
 
     fn harness_of_size(self, size: [f32; 2]) -> Harness<'static, Self> {
-        let mut harness = Harness::builder()
-            .with_size(size)
-            .with_context_setup(ui::theme::install)
-            .build_ui_state(Self::ui, self);
+        let mut harness =
+            Harness::builder().with_size(size).with_context_setup(ui::theme::install).build_ui_state(Self::ui, self);
         harness.run_steps(4);
         harness
     }
@@ -153,8 +152,7 @@ fn every_view_of_the_comparison_draws_every_sample() {
     for sample in samples::ALL {
         let session = session::parse(sample.json.as_bytes(), sample.file_name).expect("the sample is a session");
         for width in [560.0, 1000.0, 1600.0] {
-            let mut harness =
-                Bench::with(Shown::Compare, session.clone()).harness_of_size([width, 800.0]);
+            let mut harness = Bench::with(Shown::Compare, session.clone()).harness_of_size([width, 800.0]);
             for toggle in [
                 compare_words::WHY,
                 compare_words::ABOUT_MEAN,

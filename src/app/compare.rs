@@ -46,10 +46,7 @@ pub fn difference(first: &Solution, second: &Solution) -> Difference {
 /// The solution of a method, if it has one.
 #[must_use]
 pub fn solution_of(results: &[MethodResult], method: Method) -> Option<&Solution> {
-    results
-        .iter()
-        .find(|result| result.method == method)
-        .and_then(|result| result.outcome.as_ref().ok())
+    results.iter().find(|result| result.method == method).and_then(|result| result.outcome.as_ref().ok())
 }
 
 /// The solution to use: of the bundle, else of the whole curve, else of the fixed point, else of the published stop.
@@ -212,11 +209,7 @@ mod tests {
                 Vec3::new(324.593, -47.847, 140.077),
                 Vec3::new(324.298, -47.429, 140.021),
             ],
-            error_from_first_mm: vec![
-                Vec3::zeros(),
-                Vec3::new(0.151, 0.211, -0.09),
-                Vec3::new(-0.144, 0.207, -0.066),
-            ],
+            error_from_first_mm: vec![Vec3::zeros(), Vec3::new(0.151, 0.211, -0.09), Vec3::new(-0.144, 0.207, -0.066)],
             caption: "Lin & Mu 2019, Table 1".to_owned(),
             unknown: UnknownFields::new(),
         }
@@ -236,7 +229,11 @@ mod tests {
     #[test]
     fn a_table_without_errors_has_no_misprints() {
         let published = Published { error_from_first_mm: Vec::new(), ..table_1() };
-        assert!(published_rows(&published).iter().all(|row| row.printed_error_mm.is_none() && row.is_misprint == [false; 3]));
+        assert!(
+            published_rows(&published)
+                .iter()
+                .all(|row| row.printed_error_mm.is_none() && row.is_misprint == [false; 3])
+        );
         assert!(published_rows(&Published::default()).is_empty());
     }
 

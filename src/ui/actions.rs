@@ -35,16 +35,8 @@ pub enum Action {
 }
 
 /// All actions with a shortcut. Those with more modifiers come first, as a shortcut also matches with fewer.
-const WITH_SHORTCUT: [Action; 8] = [
-    Action::SaveAs,
-    Action::Redo,
-    Action::Open,
-    Action::Save,
-    Action::Undo,
-    Action::Close,
-    Action::Quit,
-    Action::Help,
-];
+const WITH_SHORTCUT: [Action; 8] =
+    [Action::SaveAs, Action::Redo, Action::Open, Action::Save, Action::Undo, Action::Close, Action::Quit, Action::Help];
 
 impl Action {
     /// Its shortcut, if it has one.
@@ -107,6 +99,7 @@ impl Action {
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// The actions whose keys were pressed in this frame.
+#[must_use]
 pub fn pressed(ctx: &egui::Context, workbench: &Workbench) -> Vec<Action> {
     let mut pressed: Vec<Action> = WITH_SHORTCUT
         .into_iter()

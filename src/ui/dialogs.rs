@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use egui::{Context, Grid, Id, Key, Modal, TextEdit, Ui, WidgetInfo};
+use egui::{Context, Frame, Grid, Id, Key, Modal, TextEdit, Ui, WidgetInfo};
 
 use crate::app::Workbench;
 use crate::text::shell as words;
@@ -25,9 +25,10 @@ pub enum UnsavedAnswer {
 }
 
 /// Asks what is to become of unsaved changes.
+#[must_use]
 pub fn ask_unsaved(ctx: &Context, title: &str) -> Option<UnsavedAnswer> {
     let mut answer = None;
-    let response = Modal::new(Id::unique("unsaved changes")).show(ctx, |ui| {
+    let response = modal(ctx, "unsaved changes").show(ctx, |ui| {
         question_heading(ui, &words::save_changes_to(title));
         ui.label(theme::dim(ui, words::SAVE_CHANGES_HINT));
         ui.add_space(16.0);
@@ -47,6 +48,10 @@ pub fn ask_unsaved(ctx: &Context, title: &str) -> Option<UnsavedAnswer> {
         answer = answer.or(Some(UnsavedAnswer::Cancel));
     }
     answer
+}
+
+fn modal(ctx: &Context, name: &str) -> Modal {
+    Modal::new(Id::unique(name)).frame(Frame::window(&ctx.global_style()).inner_margin(20))
 }
 
 fn question_heading(ui: &mut Ui, text: &str) {
@@ -75,16 +80,13 @@ impl SavePath {
     /// Starts with a suggestion.
     #[must_use]
     pub const fn new(suggestion: String) -> Self {
-        Self {
-            text: suggestion,
-            is_new: true,
-        }
+        Self { text: suggestion, is_new: true }
     }
 
     /// Asks for the path.
     pub fn ask(&mut self, ctx: &Context) -> Option<SavePathAnswer> {
         let mut answer = None;
-        let response = Modal::new(Id::unique("save as")).show(ctx, |ui| {
+        let response = modal(ctx, "save as").show(ctx, |ui| {
             question_heading(ui, words::SAVE_AS_TITLE);
             ui.label(theme::dim(ui, words::NO_FILE_DIALOG));
             ui.add_space(8.0);
@@ -120,7 +122,7 @@ pub fn help(ctx: &Context, workbench: &Workbench, open: &mut bool) {
     if !*open {
         return;
     }
-    let response = Modal::new(Id::unique("help")).show(ctx, |ui| {
+    let response = modal(ctx, "help").show(ctx, |ui| {
         question_heading(ui, words::SHORTCUTS);
         Grid::new("shortcuts").num_columns(2).spacing([24.0, 4.0]).show(ui, |ui| {
             for action in [

@@ -8,8 +8,8 @@ pub mod arcs;
 pub mod charts;
 pub mod compare;
 pub mod dialogs;
-pub mod file_dialog;
 pub mod figures;
+pub mod file_dialog;
 pub mod inspector;
 pub mod persisted;
 pub mod poses;
@@ -45,11 +45,7 @@ pub struct Selection {
 
 impl Default for Selection {
     fn default() -> Self {
-        Self {
-            station_idx: 0,
-            capture_idx: 0,
-            method: Method::BallMaxArc,
-        }
+        Self { station_idx: 0, capture_idx: 0, method: Method::BallMaxArc }
     }
 }
 

@@ -48,12 +48,7 @@ pub struct Persisted {
 
 impl Default for Persisted {
     fn default() -> Self {
-        Self {
-            theme: ThemeChoice::default(),
-            scale: 1.0,
-            recent_files: Vec::new(),
-            inspector_open: true,
-        }
+        Self { theme: ThemeChoice::default(), scale: 1.0, recent_files: Vec::new(), inspector_open: true }
     }
 }
 

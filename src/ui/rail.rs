@@ -1,6 +1,6 @@
 //! The rail at the left: the steps in the order of work, each with its state. It leads; nothing is locked.
 
-use egui::{Align2, CornerRadius, Rect, Sense, TextStyle, Ui, WidgetInfo, Role, vec2};
+use egui::{Align2, CornerRadius, Rect, Role, Sense, TextStyle, Ui, WidgetInfo, vec2};
 
 use crate::app::Workbench;
 use crate::calibrate::verdict;

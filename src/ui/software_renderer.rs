@@ -38,9 +38,7 @@ impl Texture {
     fn texel(&self, x: isize, y: isize) -> [f32; 4] {
         let x = x.clamp(0, self.width.cast_signed() - 1).cast_unsigned();
         let y = y.clamp(0, self.height.cast_signed() - 1).cast_unsigned();
-        self.pixels
-            .get(y * self.width + x)
-            .map_or([0.0; 4], |color| color.to_array().map(f32::from))
+        self.pixels.get(y * self.width + x).map_or([0.0; 4], |color| color.to_array().map(f32::from))
     }
 
     fn sample(&self, u: f32, v: f32) -> [f32; 4] {
@@ -83,11 +81,7 @@ impl SoftwareRenderer {
     #[must_use]
     pub fn paint(&self, primitives: &[ClippedPrimitive], pixels_per_point: f32, size_px: [u32; 2]) -> RgbaImage {
         let [width, height] = size_px.map(|side| usize::try_from(side).unwrap_or(0));
-        let mut canvas = Canvas {
-            width,
-            height,
-            pixels: vec![[0.0; 4]; width * height],
-        };
+        let mut canvas = Canvas { width, height, pixels: vec![[0.0; 4]; width * height] };
         for ClippedPrimitive { clip_rect, primitive } in primitives {
             let Primitive::Mesh(mesh) = primitive else { continue };
             let Some(texture) = self.textures.get(&mesh.texture_id) else { continue };
@@ -106,7 +100,7 @@ impl SoftwareRenderer {
     }
 }
 
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 struct Corner {
     x: f32,
     y: f32,
@@ -124,6 +118,14 @@ impl Corner {
             v: vertex.uv.y,
             color: vertex.color.to_array().map(f32::from),
         }
+    }
+}
+
+impl Corner {
+    /// Whether colour and texture are exactly the same, so that nothing varies between the two.
+    fn looks_as(&self, other: &Self) -> bool {
+        let bits = |corner: &Self| (corner.color.map(f32::to_bits), corner.u.to_bits(), corner.v.to_bits());
+        bits(self) == bits(other)
     }
 }
 
@@ -158,7 +160,7 @@ impl Canvas {
             std::mem::swap(&mut b, &mut c);
             double_area = -double_area;
         }
-        let is_flat = a.color == b.color && a.color == c.color && (a.u, a.v) == (b.u, b.v) && (a.u, a.v) == (c.u, c.v);
+        let is_flat = a.looks_as(&b) && a.looks_as(&c);
         let flat_source = is_flat.then(|| modulate(texture.sample(a.u, a.v), a.color));
         let edges = [(&b, &c), (&c, &a), (&a, &b)].map(|(from, to)| Edge::new(from, to));
         let top = floor(a.y.min(b.y).min(c.y)).max(clip.rows.start);
@@ -213,13 +215,7 @@ struct Edge {
 impl Edge {
     fn new(from: &Corner, to: &Corner) -> Self {
         let (dx, dy) = (to.x - from.x, to.y - from.y);
-        Self {
-            origin_x: from.x,
-            origin_y: from.y,
-            dx,
-            dy,
-            owns_border: dy < 0.0 || (dy == 0.0 && dx > 0.0),
-        }
+        Self { origin_x: from.x, origin_y: from.y, dx, dy, owns_border: dy < 0.0 || (dy == 0.0 && dx > 0.0) }
     }
 
     fn at(&self, x: f32, y: f32) -> f32 {

@@ -58,7 +58,8 @@ fn progress_or_summary(ui: &mut Ui, workbench: &Workbench, commands: &mut Vec<Co
         ui.label(theme::dim(ui, summary));
     } else {
         let color = theme::palette(ui).warn;
-        ui.label(RichText::new(format!("! {}", words::OUT_OF_DATE)).color(color)).on_hover_text(words::OUT_OF_DATE_HINT);
+        ui.label(RichText::new(format!("! {}", words::OUT_OF_DATE)).color(color))
+            .on_hover_text(words::OUT_OF_DATE_HINT);
     }
 }
 

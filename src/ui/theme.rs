@@ -5,7 +5,10 @@
 
 use std::sync::Arc;
 
-use egui::{Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, RichText, Stroke, TextStyle, Theme, vec2};
+use egui::{
+    Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, RichText, Stroke, TextStyle, Theme,
+    vec2,
+};
 use egui_plot::MarkerShape;
 
 use crate::calibrate::{Method, Verdict};
@@ -236,7 +239,8 @@ fn fonts() -> FontDefinitions {
         fonts.font_data.insert(name.to_owned(), Arc::new(FontData::from_static(bytes)));
     }
     // Ticks, folding triangles and emoji stand in none of the first, so the others back it up.
-    let family = |first: &str| [first, "Ubuntu-Light", "Hack", "NotoEmoji-Regular", "emoji-icon-font"].map(str::to_owned).into();
+    let family =
+        |first: &str| [first, "Ubuntu-Light", "Hack", "NotoEmoji-Regular", "emoji-icon-font"].map(str::to_owned).into();
     fonts.families.insert(FontFamily::Proportional, family("Inter"));
     fonts.families.insert(number_family(), family("Inter"));
     fonts.families.insert(strong_family(), family("Inter SemiBold"));

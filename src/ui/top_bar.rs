@@ -128,7 +128,7 @@ fn title(ui: &Ui, workbench: &Workbench, full: egui::Rect, free: std::ops::Range
         ..egui::text::LayoutJob::simple_singleline(text, font, color)
     };
     let galley = ui.painter().layout_job(job);
-    let half = (galley.size().x + dot_room) / 2.0;
+    let half = f32::midpoint(galley.size().x, dot_room);
     let center_x = full.center().x.clamp(free.start + 16.0 + half, free.end - 16.0 - half);
     let left_center = egui::pos2(center_x - half, full.center().y);
     let rect = Align2::LEFT_CENTER.anchor_size(left_center, galley.size());

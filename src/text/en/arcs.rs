@@ -57,7 +57,8 @@ pub const SWEEP_NOT_EVALUATED: &str = "No largest-arc method evaluated this stat
 /// In place of the curve of a station that does not take part.
 pub const STATION_LEFT_OUT: &str = "This station is left out: tick it in Compare or Poses to see its curve.";
 /// In place of the profile where there is none.
-pub const POINT_READING: &str = "This station holds a ball centre that was already reduced elsewhere; there is no profile to look at.";
+pub const POINT_READING: &str =
+    "This station holds a ball centre that was already reduced elsewhere; there is no profile to look at.";
 /// In place of the panel without a session.
 pub const NO_SESSION: &str = "Open a session, or one of the samples, to see its profiles.";
 /// In place of the panel for a session without stations.
@@ -81,7 +82,7 @@ pub const fn circle_method(method: CircleMethod) -> &'static str {
 /// What another fit makes of the same inliers.
 #[must_use]
 pub fn fit_shift(dx: &str, dz: &str, dl: &str) -> String {
-    format!("centre {dx}, {dz} µm · l {dl} µm against robust")
+    format!("against robust: Δx {dx}  Δz {dz}  Δl {dl} µm")
 }
 
 /// Position in the sweep.

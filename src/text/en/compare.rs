@@ -30,8 +30,12 @@ pub const MATRICES: &str = "matrices";
 pub const STATION: &str = "station";
 /// Head over the ball's coordinates.
 pub const BALL_IN_BASE: &str = "ball in base / mm";
-/// Head over the errors from the first station.
-pub const ERROR_FROM_FIRST: &str = "error from station 1 / mm";
+/// Head over the errors from the first station used.
+#[must_use]
+pub fn error_from_first(label: &str) -> String {
+    format!("error from station {label} / mm")
+}
+
 /// Head over the errors about the mean.
 pub const ERROR_FROM_MEAN: &str = "error about the mean / mm";
 /// Head of the error's size.
@@ -59,7 +63,8 @@ pub const ERROR_PER_STATION: &str = "Error per station";
 /// Bars show left-out errors.
 pub const BARS_LEFT_OUT: &str = "left out";
 /// What left-out errors are.
-pub const BARS_LEFT_OUT_HINT: &str = "Each station's ball against the calibration made without that station: what a new station would see";
+pub const BARS_LEFT_OUT_HINT: &str =
+    "Each station's ball against the calibration made without that station: what a new station would see";
 /// Bars show in-sample errors.
 pub const BARS_IN_SAMPLE: &str = "in sample";
 /// What in-sample errors are.
@@ -91,7 +96,8 @@ pub const WITHIN: &str = "within its σ";
 /// Instead of a significance.
 pub const NO_STD: &str = "σ unknown";
 /// In place of the difference table.
-pub const NOTHING_TO_COMPARE: &str = "A second method with a result is needed to compare; the cards above say what each method lacks.";
+pub const NOTHING_TO_COMPARE: &str =
+    "A second method with a result is needed to compare; the cards above say what each method lacks.";
 /// Title of the published card.
 pub const AS_PUBLISHED: &str = "As published";
 /// Published card: printed error.
@@ -122,7 +128,7 @@ pub fn headline_figure(std_mm: &str) -> String {
 /// Whose verdict it is.
 #[must_use]
 pub fn verdict_of(method: &str) -> String {
-    format!("verdict on: {method}")
+    format!("Verdict on “{method}”")
 }
 
 /// The method's name in the comparison, where space is short.
@@ -149,20 +155,14 @@ pub fn against(baseline: &str, error_mm: &str) -> String {
 }
 
 /// What "maximum error" means.
-pub const MAXIMUM_ERROR_HINT: &str =
-    "As in the paper: the largest coordinate of any station's ball relative to the first station's. A small value alone proves little; see the left-out error";
+pub const MAXIMUM_ERROR_HINT: &str = "As in the paper: the largest coordinate of any station's ball relative to the first station's. A small value alone proves little; see the left-out error";
 
 /// Figures at the right of a method's head.
 #[must_use]
 pub fn method_figures(max_mm: &str, left_out_mm: Option<&str>, std_mm: Option<&str>) -> String {
-    let mut words = format!("max {max_mm}");
-    if let Some(left_out_mm) = left_out_mm {
-        words += &format!(" · left out {left_out_mm}");
-    }
-    if let Some(std_mm) = std_mm {
-        words += &format!(" · σ {std_mm}");
-    }
-    words + " mm"
+    let left_out = left_out_mm.map_or_else(String::new, |left_out_mm| format!(" · left out {left_out_mm}"));
+    let std = std_mm.map_or_else(String::new, |std_mm| format!(" · σ {std_mm}"));
+    format!("max {max_mm}{left_out}{std} mm")
 }
 
 /// What the figures in a method's head mean.
@@ -235,15 +235,15 @@ pub fn verdict_reason(solution: &Solution, reason: VerdictReason) -> String {
         VerdictReason::WorkspacePoint(std_mm) => {
             format!("The standard deviation of a point in the workspace is {std_mm:.2} mm.")
         }
-        VerdictReason::LeaveOneOut(error_mm) => format!(
-            "Stations left out are missed by {error_mm:.2} mm RMS, more than the standard deviation promises."
-        ),
-        VerdictReason::Warning(warning_idx) => solution
-            .warnings
-            .get(warning_idx)
-            .map_or_else(String::new, |warning| format!("The figures are small, but: {}", warnings::warning_message(warning))),
+        VerdictReason::LeaveOneOut(error_mm) => {
+            format!("Stations left out are missed by {error_mm:.2} mm RMS, more than the standard deviation promises.")
+        }
+        VerdictReason::Warning(warning_idx) => solution.warnings.get(warning_idx).map_or_else(String::new, |warning| {
+            format!("The figures are small, but: {}", warnings::warning_message(warning))
+        }),
         VerdictReason::NoRedundancy => {
-            "There are only as many stations as unknowns need: nothing is left over to judge by. Add stations.".to_owned()
+            "There are only as many stations as unknowns need: nothing is left over to judge by. Add stations."
+                .to_owned()
         }
     }
 }

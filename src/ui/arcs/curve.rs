@@ -50,11 +50,18 @@ pub fn show(
     rule(ui);
     let strip_extent = Extent { x: extent.x, y: residual_range(sweep) };
     let height = ui.available_height();
-    let mut strip = Chart::new(Id::unique("arcs curve residuals"), text::TRAVEL_AXIS, text::CURVE_RESIDUAL_AXIS, height, strip_extent);
+    let mut strip = Chart::new(
+        Id::unique("arcs curve residuals"),
+        text::TRAVEL_AXIS,
+        text::CURVE_RESIDUAL_AXIS,
+        height,
+        strip_extent,
+    );
     strip.x_group = Some(group);
     strip.follows_x = true;
     let strip = strip.show(ui, is_fitted);
-    let in_strip = strip.hovered(sweep.points.iter().map(|point| (point, [point.travel_mm, point.residual_mm * 1000.0])));
+    let in_strip =
+        strip.hovered(sweep.points.iter().map(|point| (point, [point.travel_mm, point.residual_mm * 1000.0])));
     let zero = Stroke::new(1.0, theme::palette(ui).text_dim.gamma_multiply(0.6));
     strip.painter.hline(strip.rect().x_range(), strip.at(0.0, 0.0).y, zero);
 
@@ -139,17 +146,21 @@ fn paint_curve(ui: &Ui, canvas: &Canvas, sweep: &Sweep, ball_radius_mm: f64) {
     let line_y = canvas.at(0.0, ball_radius_mm).y;
     let line = [pos2(rect.left(), line_y), pos2(rect.right(), line_y)];
     charts::dotted_line(&canvas.painter, &line, palette.text_dim);
-    canvas.note(ui, pos2(rect.left() + 8.0, line_y - 3.0), Align2::LEFT_BOTTOM, text::BALL_RADIUS_LINE, palette.text_dim);
+    canvas.note(
+        ui,
+        pos2(rect.left() + 8.0, line_y - 3.0),
+        Align2::LEFT_BOTTOM,
+        text::BALL_RADIUS_LINE,
+        palette.text_dim,
+    );
 
     let bounds = canvas.transform.bounds().range_x();
     let curve = curve_points(sweep.peak_mm, ball_radius_mm, [*bounds.start(), *bounds.end()]);
     let curve = curve.into_iter().map(|[travel, radius]| canvas.at(travel, radius)).collect();
     canvas.painter.line(curve, Stroke::new(1.5, color));
 
-    let peak = text::peak(
-        &widgets::signed(sweep.peak_mm, decimals_of_std(sweep.peak_std_mm)),
-        &std_text(sweep.peak_std_mm),
-    );
+    let peak =
+        text::peak(&widgets::signed(sweep.peak_mm, decimals_of_std(sweep.peak_std_mm)), &std_text(sweep.peak_std_mm));
     canvas.note(ui, pos2(middle + half + 6.0, rect.bottom() - 12.0), Align2::LEFT_BOTTOM, &peak, palette.text);
 
     let on_curve = |travel_mm: f64| {

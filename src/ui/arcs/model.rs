@@ -171,12 +171,7 @@ pub fn profile_model(
             residual_um: circle.map_or(f64::NAN, |circle| circle.distance_mm(x_mm, z_mm) * 1000.0),
         })
         .collect();
-    ProfileModel {
-        z_grows_away: z_grows_away(&points, circle.as_ref()),
-        points,
-        section,
-        ball_radius_mm,
-    }
+    ProfileModel { z_grows_away: z_grows_away(&points, circle.as_ref()), points, section, ball_radius_mm }
 }
 
 fn section_model(arc: &ArcFit, method: CircleMethod) -> Result<SectionModel, String> {

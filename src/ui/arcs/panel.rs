@@ -209,7 +209,7 @@ fn plots(
         .unwrap_or(selection.capture_idx);
     let view = state.view(document, results, selection.station_idx, shown_capture);
     let is_out_of_date = results.is_some_and(|results| results.revision != document.revision);
-    top_strip(ui, station, sweep, view.as_deref(), selection, &mut state.fit, is_out_of_date);
+    top_strip(ui, station, sweep, selection, &mut state.fit, is_out_of_date);
 
     let bottom_height = sweep.map_or(0.0, |_| BOTTOM_HEIGHT + theme::GAP);
     let height = ui.available_height() - bottom_height;
@@ -223,7 +223,7 @@ fn plots(
         let (left, right) = area.split_left_right_at_x(area.left() + profile_width);
         let right = right.with_min_x(right.left() + theme::GAP);
         let mut left = ui.new_child(UiBuilder::new().max_rect(left));
-        profile_card(&mut left, &title, height, view.as_deref(), &mut state.is_profile_fitted);
+        profile_card(&mut left, &title, height, view.as_deref(), state);
         let mut right = ui.new_child(UiBuilder::new().max_rect(right));
         curve_card(&mut right, height, station, sweep, ball_radius_mm, selection, state, hovered_in_list);
         ui.advance_cursor_after_rect(area.with_max_y(area.top() + height));
@@ -235,7 +235,7 @@ fn plots(
         ScrollArea::vertical().id_salt("arcs plots").auto_shrink([false, false]).show(&mut page, |ui| {
             ui.set_max_width(area.width());
             ui.spacing_mut().item_spacing.y = theme::GAP;
-            profile_card(ui, &title, STACKED_HEIGHT, view.as_deref(), &mut state.is_profile_fitted);
+            profile_card(ui, &title, STACKED_HEIGHT, view.as_deref(), state);
             curve_card(ui, STACKED_HEIGHT, station, sweep, ball_radius_mm, selection, state, hovered_in_list);
             bottom_strip(ui, sweep);
         });
@@ -249,44 +249,43 @@ fn top_strip(
     ui: &mut Ui,
     station: &StationRow,
     sweep: Option<&Sweep>,
-    view: Option<&CaptureView>,
     selection: &mut Selection,
     fit: &mut CircleMethod,
     is_out_of_date: bool,
 ) {
-    widgets::card(ui, "", |_| {}, |ui| {
-        Frame::new().inner_margin(Margin::symmetric(12, 8)).show(ui, |ui| {
-            ui.horizontal_wrapped(|ui| {
-                ui.set_min_height(STRIP_HEIGHT - 16.0);
-                let label = ui.label(text::FIT);
-                ComboBox::from_id_salt("arcs fit")
-                    .selected_text(text::circle_method(*fit))
-                    .width(148.0)
-                    .show_ui(ui, |ui| {
-                        for method in CircleMethod::ALL {
-                            ui.selectable_value(fit, method, text::circle_method(method));
-                        }
-                    })
-                    .response
-                    .labelled_by(label.id);
-                steps(ui, station, selection);
-                if let Some(sweep) = sweep {
-                    let angle_deg = sweep.travel_off_normal_rad.to_degrees();
-                    ui.label(theme::dim(ui, text::travel_off_normal(angle_deg)));
-                }
-                if let Some(CaptureView::Profile(model::ProfileModel { section: Ok(section), .. })) = view
-                    && *fit != CircleMethod::Robust
-                {
-                    ui.label(theme::dim(ui, profile::shift_words(section)));
-                }
-                if is_out_of_date {
-                    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                        ui.label(theme::dim(ui, text::OUT_OF_DATE).color(theme::palette(ui).warn));
-                    });
-                }
+    widgets::card(
+        ui,
+        "",
+        |_| {},
+        |ui| {
+            Frame::new().inner_margin(Margin::symmetric(12, 8)).show(ui, |ui| {
+                ui.horizontal_wrapped(|ui| {
+                    ui.set_min_height(STRIP_HEIGHT - 16.0);
+                    let label = ui.label(text::FIT);
+                    ComboBox::from_id_salt("arcs fit")
+                        .selected_text(text::circle_method(*fit))
+                        .width(148.0)
+                        .show_ui(ui, |ui| {
+                            for method in CircleMethod::ALL {
+                                ui.selectable_value(fit, method, text::circle_method(method));
+                            }
+                        })
+                        .response
+                        .labelled_by(label.id);
+                    steps(ui, station, selection);
+                    if let Some(sweep) = sweep {
+                        let angle_deg = sweep.travel_off_normal_rad.to_degrees();
+                        ui.label(theme::dim(ui, text::travel_off_normal(angle_deg)));
+                    }
+                    if is_out_of_date {
+                        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                            ui.label(theme::dim(ui, text::OUT_OF_DATE).color(theme::palette(ui).warn));
+                        });
+                    }
+                });
             });
-        });
-    });
+        },
+    );
 }
 
 fn steps(ui: &mut Ui, station: &StationRow, selection: &mut Selection) {
@@ -313,9 +312,19 @@ fn steps(ui: &mut Ui, station: &StationRow, selection: &mut Selection) {
     });
 }
 
-fn profile_card(ui: &mut Ui, title: &str, height: f32, view: Option<&CaptureView>, is_fitted: &mut bool) {
+fn profile_card(ui: &mut Ui, title: &str, height: f32, view: Option<&CaptureView>, state: &mut ArcsState) {
+    let fit = state.fit;
+    let is_fitted = &mut state.is_profile_fitted;
     let right = |ui: &mut Ui| {
-        ui.label(theme::dim(ui, text::TRUE_SCALE));
+        let words = match view {
+            Some(CaptureView::Profile(model::ProfileModel { section: Ok(section), .. }))
+                if fit != CircleMethod::Robust =>
+            {
+                profile::shift_words(section)
+            }
+            _ => text::TRUE_SCALE.to_owned(),
+        };
+        ui.label(theme::dim(ui, words));
     };
     widgets::card_with_height(ui, title, height, right, |ui| match view {
         Some(CaptureView::Profile(model)) => profile::show(ui, model, is_fitted),
@@ -351,42 +360,54 @@ fn curve_card(
     state: &mut ArcsState,
     hovered_in_list: Option<usize>,
 ) {
-    widgets::card_with_height(ui, text::RADIUS_AGAINST_STEP, height, |_| {}, |ui| {
-        let (Some(sweep), Some(ball_radius_mm)) = (sweep, ball_radius_mm) else {
-            state.hovered_capture = None;
-            let sentence = if station.captures.len() < 2 {
-                text::NO_SWEEP
-            } else if station.is_enabled {
-                text::SWEEP_NOT_EVALUATED
-            } else {
-                text::STATION_LEFT_OUT
+    widgets::card_with_height(
+        ui,
+        text::RADIUS_AGAINST_STEP,
+        height,
+        |_| {},
+        |ui| {
+            let (Some(sweep), Some(ball_radius_mm)) = (sweep, ball_radius_mm) else {
+                state.hovered_capture = None;
+                let sentence = if station.captures.len() < 2 {
+                    text::NO_SWEEP
+                } else if station.is_enabled {
+                    text::SWEEP_NOT_EVALUATED
+                } else {
+                    text::STATION_LEFT_OUT
+                };
+                empty_card(ui, sentence, None);
+                return;
             };
-            empty_card(ui, sentence, None);
-            return;
-        };
-        let emphasised = hovered_in_list;
-        let response =
-            curve::show(ui, sweep, ball_radius_mm, selection.capture_idx, emphasised, &mut state.is_curve_fitted);
-        state.hovered_capture = response.hovered.or(hovered_in_list);
-        if let Some(capture_idx) = response.clicked {
-            selection.capture_idx = capture_idx;
-        }
-    });
+            let emphasised = hovered_in_list;
+            let response =
+                curve::show(ui, sweep, ball_radius_mm, selection.capture_idx, emphasised, &mut state.is_curve_fitted);
+            state.hovered_capture = response.hovered.or(hovered_in_list);
+            if let Some(capture_idx) = response.clicked {
+                selection.capture_idx = capture_idx;
+            }
+        },
+    );
 }
 
 fn bottom_strip(ui: &mut Ui, sweep: Option<&Sweep>) {
     let Some(sweep) = sweep else { return };
-    widgets::card_with_height(ui, "", BOTTOM_HEIGHT, |_| {}, |ui| {
-        Frame::new().inner_margin(Margin::symmetric(12, 9)).show(ui, |ui| {
-            ui.horizontal_wrapped(|ui| {
-                ui.label(theme::strong(text::RULE_AND_CURVE));
-                let sentence = text::rule_and_curve(
-                    &std_text(sweep.published_stop_std_mm),
-                    sweep.points.len(),
-                    &std_text(sweep.peak_std_mm),
-                );
-                ui.label(theme::dim(ui, sentence));
+    widgets::card_with_height(
+        ui,
+        "",
+        BOTTOM_HEIGHT,
+        |_| {},
+        |ui| {
+            Frame::new().inner_margin(Margin::symmetric(12, 9)).show(ui, |ui| {
+                ui.horizontal_wrapped(|ui| {
+                    ui.label(theme::strong(text::RULE_AND_CURVE));
+                    let sentence = text::rule_and_curve(
+                        &std_text(sweep.published_stop_std_mm),
+                        sweep.points.len(),
+                        &std_text(sweep.peak_std_mm),
+                    );
+                    ui.label(theme::dim(ui, sentence));
+                });
             });
-        });
-    });
+        },
+    );
 }

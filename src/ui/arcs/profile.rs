@@ -25,7 +25,8 @@ pub fn show(ui: &mut Ui, model: &ProfileModel, is_fitted: &mut bool) {
     let height = ui.available_height();
     let has_section = model.section.is_ok();
     let profile_height = if has_section { (height * PROFILE_PART).round() } else { height };
-    let mut chart = Chart::new(Id::unique("arcs profile"), text::X_AXIS, text::Z_AXIS, profile_height, profile_extent(model));
+    let mut chart =
+        Chart::new(Id::unique("arcs profile"), text::X_AXIS, text::Z_AXIS, profile_height, profile_extent(model));
     chart.invert_y = model.z_grows_away;
     chart.has_equal_scales = true;
     chart.x_group = Some(group);
@@ -145,17 +146,18 @@ fn paint_profile(ui: &Ui, canvas: &Canvas, model: &ProfileModel) {
         let stroke = Stroke::new(1.8, section_color);
         canvas.painter.line_segment([centre - vec2(6.0, 0.0), centre + vec2(6.0, 0.0)], stroke);
         canvas.painter.line_segment([centre - vec2(0.0, 6.0), centre + vec2(0.0, 6.0)], stroke);
-        let label = text::centre(
-            &with_std(circle.x_mm, section.std_mm[0]),
-            &with_std(circle.z_mm, section.std_mm[1]),
-        );
+        let label = text::centre(&with_std(circle.x_mm, section.std_mm[0]), &with_std(circle.z_mm, section.std_mm[1]));
         canvas.note(ui, centre + vec2(0.0, 10.0), Align2::CENTER_TOP, &label, palette.text);
     }
 }
 
 fn paint_residuals(ui: &Ui, canvas: &Canvas, model: &ProfileModel) {
     let zero = canvas.at(0.0, 0.0).y;
-    canvas.painter.hline(canvas.rect().x_range(), zero, Stroke::new(1.0, theme::palette(ui).text_dim.gamma_multiply(0.6)));
+    canvas.painter.hline(
+        canvas.rect().x_range(),
+        zero,
+        Stroke::new(1.0, theme::palette(ui).text_dim.gamma_multiply(0.6)),
+    );
     let on_screen = inliers(model).map(|point| canvas.at(point.x_mm, point.residual_um));
     for at in charts::thinned(on_screen, canvas.rect(), THIN_TO) {
         canvas.painter.circle_filled(at, POINT_RADIUS, theme::INLIER);
@@ -168,10 +170,9 @@ fn readout(ui: &Ui, profile: &Canvas, strip: &Canvas, model: &ProfileModel) {
     let in_strip = strip.hovered(inliers(model).map(|point| (point, [point.x_mm, point.residual_um])));
     let Some(point) = in_profile.or(in_strip) else { return };
     let ring = Stroke::new(1.5, theme::palette(ui).text);
-    for (canvas, at) in [
-        (profile, profile.at(point.x_mm, point.z_mm)),
-        (strip, strip.at(point.x_mm, point.residual_um)),
-    ] {
+    for (canvas, at) in
+        [(profile, profile.at(point.x_mm, point.z_mm)), (strip, strip.at(point.x_mm, point.residual_um))]
+    {
         canvas.painter.circle(at, POINT_RADIUS + 2.0, Color32::TRANSPARENT, ring);
     }
     let words = text::point_readout(
@@ -201,7 +202,7 @@ fn refusal(ui: &mut Ui, canvas: &Canvas, reason: &str) {
 
 /// The shift of another fit against the robust one, in words.
 pub fn shift_words(section: &SectionModel) -> String {
-    let [dx, dz, dl] = section.shift_um.map(|shift| widgets::signed(shift, 1));
+    let [dx, dz, dl] = section.shift_um.map(|shift| widgets::signed(shift, 2));
     text::fit_shift(&dx, &dz, &dl)
 }
 

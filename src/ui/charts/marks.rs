@@ -17,15 +17,13 @@ pub fn marker(painter: &Painter, shape: MarkerShape, centre: Pos2, radius: f32, 
     painter.add(match shape {
         MarkerShape::Up => corners(&[-TAU / 4.0, TAU / 12.0, TAU * 5.0 / 12.0], radius * 1.25),
         MarkerShape::Down => corners(&[TAU / 4.0, -TAU / 12.0, -TAU * 5.0 / 12.0], radius * 1.25),
-        MarkerShape::Square => {
-            Shape::Rect(egui::epaint::RectShape::new(
-                Rect::from_center_size(centre, Vec2::splat(radius * 1.8)),
-                0.0,
-                fill,
-                stroke,
-                egui::StrokeKind::Middle,
-            ))
-        }
+        MarkerShape::Square => Shape::Rect(egui::epaint::RectShape::new(
+            Rect::from_center_size(centre, Vec2::splat(radius * 1.8)),
+            0.0,
+            fill,
+            stroke,
+            egui::StrokeKind::Middle,
+        )),
         MarkerShape::Diamond => corners(&[0.0, TAU / 4.0, TAU / 2.0, -TAU / 4.0], radius * 1.2),
         _ => Shape::Circle(egui::epaint::CircleShape { center: centre, radius, fill, stroke }),
     });

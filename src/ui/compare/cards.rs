@@ -1,6 +1,8 @@
 //! One card a method: its name and figures, then its table or the reason why there is none.
 
-use egui::{Align, Align2, Checkbox, Color32, Frame, Layout, Margin, Rect, Role, Sense, Ui, UiBuilder, WidgetInfo, vec2};
+use egui::{
+    Align, Align2, Checkbox, Color32, Frame, Layout, Margin, Rect, Role, Sense, Ui, UiBuilder, WidgetInfo, vec2,
+};
 
 use crate::app::Command;
 use crate::calibrate::{Method, Mount};
@@ -41,24 +43,29 @@ pub fn show(
 ) {
     let top = ui.cursor().min;
     let width = ui.available_width();
-    widgets::card(ui, "", |_| {}, |ui| {
-        ui.spacing_mut().item_spacing.y = 0.0;
-        head(ui, column, options.reference, selection);
-        match &column.outcome {
-            Ok(table) => {
-                if options.has_paper_layout {
-                    paper::show(ui, column.method, table, options.reference, selection, commands);
-                } else {
-                    plain(ui, column.method, table, options.reference, selection, commands);
+    widgets::card(
+        ui,
+        "",
+        |_| {},
+        |ui| {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            head(ui, column, options.reference, selection);
+            match &column.outcome {
+                Ok(table) => {
+                    if options.has_paper_layout {
+                        paper::show(ui, column.method, table, options.reference, selection, commands);
+                    } else {
+                        plain(ui, column.method, table, options.reference, selection, commands);
+                    }
+                    footer(ui, table);
+                    if options.has_matrix {
+                        matrix(ui, table);
+                    }
                 }
-                footer(ui, table);
-                if options.has_matrix {
-                    matrix(ui, table);
-                }
+                Err(reason) => refused(ui, reason),
             }
-            Err(reason) => refused(ui, reason),
-        }
-    });
+        },
+    );
     let edge = Rect::from_min_size(top, vec2(width, EDGE_HEIGHT));
     ui.painter().rect_filled(edge, 0.0, theme::method_color(column.method));
 }
@@ -122,7 +129,7 @@ fn plain(
     let mut row = RowCells::new(ui, theme::ROW_HEIGHT);
     row.head(widths[0], text::STATION, Align2::LEFT_CENTER);
     row.head(widths[1..4].iter().sum(), text::BALL_IN_BASE, Align2::CENTER_CENTER);
-    row.head(widths[4..7].iter().sum(), reference_head(reference), Align2::CENTER_CENTER);
+    row.head(widths[4..7].iter().sum(), &reference_head(reference, table), Align2::CENTER_CENTER);
     row.head(widths[7], text::ERROR_SIZE, Align2::RIGHT_CENTER);
     let mut row = RowCells::new(ui, theme::ROW_HEIGHT - 2.0);
     row.head(widths[0], "", Align2::LEFT_CENTER);
@@ -141,10 +148,12 @@ fn plain(
     }
 }
 
-const fn reference_head(reference: ErrorReference) -> &'static str {
-    match reference {
-        ErrorReference::FirstStation => text::ERROR_FROM_FIRST,
-        ErrorReference::Mean => text::ERROR_FROM_MEAN,
+fn reference_head(reference: ErrorReference, table: &MethodTable) -> String {
+    match (reference, table.used().next()) {
+        (ErrorReference::FirstStation, Some((station_idx, _))) => {
+            text::error_from_first(&table.rows[station_idx].label)
+        }
+        _ => text::ERROR_FROM_MEAN.to_owned(),
     }
 }
 
@@ -216,10 +225,8 @@ fn footer(ui: &mut Ui, table: &MethodTable) {
     let mut row = RowCells::new(ui, theme::ROW_HEIGHT);
     let width = row.rect().width();
     row.head(width * 0.36, text::FROM_TRUTH, Align2::LEFT_CENTER);
-    let figures = text::truth_figures(
-        &coordinate(truth.workspace_point_mm),
-        &widgets::fixed(truth.rotation_rad.to_degrees(), 3),
-    );
+    let figures =
+        text::truth_figures(&coordinate(truth.workspace_point_mm), &widgets::fixed(truth.rotation_rad.to_degrees(), 3));
     let color = theme::palette(row.ui()).text;
     row.word(width * 0.64, &figures, color);
 }

@@ -11,12 +11,8 @@ use crate::session::Session;
 use crate::text;
 
 /// The methods from left to right: the paper's two first, then the answer to use; the published stop by choice.
-pub const COLUMN_ORDER: [Method; 4] = [
-    Method::BallFixedPoint,
-    Method::BallMaxArc,
-    Method::BallBundle,
-    Method::BallMaxArcStep,
-];
+pub const COLUMN_ORDER: [Method; 4] =
+    [Method::BallFixedPoint, Method::BallMaxArc, Method::BallBundle, Method::BallMaxArcStep];
 
 /// What errors are relative to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -29,6 +25,7 @@ pub enum ErrorReference {
 }
 
 /// What a method says about a station.
+#[expect(clippy::struct_field_names, reason = "every name carries its unit")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UsedStation {
     /// Ball in the sensor frame of the first capture, mm.
@@ -231,11 +228,7 @@ fn method_table(session: &Session, solution: &Solution) -> MethodTable {
                 is_enabled: station.enabled,
                 translation_mm: pose.map_or_else(Vec3::zeros, crate::geometry::Transform::translation_mm),
                 quaternion_wxyz: pose.map_or([1.0, 0.0, 0.0, 0.0], crate::geometry::Transform::quaternion_wxyz),
-                used: solution
-                    .stations
-                    .iter()
-                    .find(|used| used.station_idx == station_idx)
-                    .map(UsedStation::from),
+                used: solution.stations.iter().find(|used| used.station_idx == station_idx).map(UsedStation::from),
             }
         })
         .collect();
@@ -255,9 +248,10 @@ fn band(solution: &Solution) -> Band {
         method: solution.method,
         verdict,
         reason: text::compare::verdict_reason(solution, reason),
-        workspace_point: solution.uncertainty.as_ref().map(|uncertainty| {
-            (uncertainty.reference_point_in_sensor_mm.z.abs(), uncertainty.workspace_point_std_mm)
-        }),
+        workspace_point: solution
+            .uncertainty
+            .as_ref()
+            .map(|uncertainty| (uncertainty.reference_point_in_sensor_mm.z.abs(), uncertainty.workspace_point_std_mm)),
         warnings: solution
             .warnings
             .iter()

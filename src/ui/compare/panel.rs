@@ -18,6 +18,8 @@ use super::{differences, published, table, verdict};
 
 /// A card narrower than this clips its numbers, points.
 const MIN_CARD_WIDTH: f32 = 440.0;
+/// The same in the layout of the paper's tables.
+const MIN_PAPER_CARD_WIDTH: f32 = 560.0;
 /// Below this width the plots stand above each other.
 const PLOTS_SIDE_BY_SIDE_FROM: f32 = 720.0;
 /// Least height of a plot's card.
@@ -59,17 +61,17 @@ impl CompareState {
     fn shown(&self, model: &CompareModel, width: f32) -> Vec<Method> {
         self.shown.clone().unwrap_or_else(|| {
             let has_failed = model.columns.iter().take(2).any(|column| column.outcome.is_err());
-            let count = if has_failed || cards_a_row(width) >= 3 { 3 } else { 2 };
+            let count = if has_failed || cards_a_row(width, MIN_CARD_WIDTH) >= 3 { 3 } else { 2 };
             COLUMN_ORDER[..count].to_vec()
         })
     }
 }
 
-fn cards_a_row(width: f32) -> usize {
+fn cards_a_row(width: f32, card_width: f32) -> usize {
     let mut count = 1;
-    let mut used = MIN_CARD_WIDTH;
-    while used + theme::GAP + MIN_CARD_WIDTH <= width && count < COLUMN_ORDER.len() {
-        used += theme::GAP + MIN_CARD_WIDTH;
+    let mut used = card_width;
+    while used + theme::GAP + card_width <= width && count < COLUMN_ORDER.len() {
+        used += theme::GAP + card_width;
         count += 1;
     }
     count
@@ -174,18 +176,18 @@ fn method_cards(
     state: &CompareState,
 ) {
     // Tables stand beside each other; a card with nothing but a reason needs little room, below them.
-    let (tables, refusals): (Vec<&Column>, Vec<&Column>) = model
-        .columns
-        .iter()
-        .filter(|column| shown.contains(&column.method))
-        .partition(|column| column.outcome.is_ok());
+    let (tables, refusals): (Vec<&Column>, Vec<&Column>) =
+        model.columns.iter().filter(|column| shown.contains(&column.method)).partition(|column| column.outcome.is_ok());
     let options = CardOptions {
         reference: state.reference,
         has_paper_layout: state.has_paper_layout,
         has_matrix: state.has_matrices,
     };
     let width = ui.available_width();
-    for (columns, most) in [(tables, cards_a_row(width)), (refusals, cards_a_row(width).min(2))] {
+    let min_width = if state.has_paper_layout { MIN_PAPER_CARD_WIDTH } else { MIN_CARD_WIDTH };
+    for (columns, most) in
+        [(tables, cards_a_row(width, min_width)), (refusals, cards_a_row(width, MIN_CARD_WIDTH).min(2))]
+    {
         rows_of_cards(ui, &columns, most, options, context);
     }
 }

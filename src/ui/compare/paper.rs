@@ -13,6 +13,8 @@ use super::table::{RowCells, coordinate, tint};
 
 /// Height of one of a station's four lines.
 const LINE_HEIGHT: f32 = 18.0;
+/// From the right end of a number to its name, points: near enough to read them as one.
+const NAME_OFFSET: f32 = 92.0;
 /// Parts of a row: number, translation, quaternion, ball in sensor, ball in base, error.
 const PARTS: [f32; 6] = [52.0, 92.0, 92.0, 96.0, 96.0, 84.0];
 
@@ -27,14 +29,8 @@ pub fn show(
 ) {
     let scale = ui.available_width() / PARTS.iter().sum::<f32>();
     let widths = PARTS.map(|part| part * scale);
-    let heads = [
-        text::NUMBER,
-        text::TRANSLATION,
-        text::QUATERNION,
-        text::BALL_IN_SENSOR,
-        text::BALL_IN_BASE,
-        text::ERROR,
-    ];
+    let heads =
+        [text::NUMBER, text::TRANSLATION, text::QUATERNION, text::BALL_IN_SENSOR, text::BALL_IN_BASE, text::ERROR];
     let mut row = RowCells::new(ui, theme::ROW_HEIGHT);
     for (idx, (width, head)) in widths.iter().zip(heads).enumerate() {
         row.head(*width, head, if idx == 0 { Align2::LEFT_CENTER } else { Align2::RIGHT_CENTER });
@@ -63,10 +59,9 @@ fn blocks(row: &mut RowCells<'_>, widths: &[f32; 6], station: &Row, reference: E
         row.text(widths[3..].iter().sum(), words);
         return;
     };
-    for (width, point, names) in [
-        (widths[3], used.ball_in_sensor_mm, ["xs", "ys", "zs"]),
-        (widths[4], used.ball_in_base_mm, ["xb", "yb", "zb"]),
-    ] {
+    for (width, point, names) in
+        [(widths[3], used.ball_in_sensor_mm, ["xs", "ys", "zs"]), (widths[4], used.ball_in_base_mm, ["xb", "yb", "zb"])]
+    {
         let lines = names.into_iter().zip(point.iter().copied());
         block(row, width, faded, lines.map(|(name, value)| (name, value, coordinate(value), false)));
     }
@@ -90,7 +85,7 @@ fn block<'n>(
         let painter = row.ui().painter().clone();
         let ground = if is_error && !is_faded { tint(value) } else { Color32::TRANSPARENT };
         painter.rect_filled(line.shrink2(vec2(1.0, 0.0)), 0.0, ground);
-        let at = line.left_center() + vec2(8.0, 0.0);
+        let at = pos2(line.right() - NAME_OFFSET.min(width - 8.0), line.center().y);
         painter.text(at, Align2::LEFT_CENTER, name, FontId::proportional(theme::SMALL_SIZE), palette.text_dim);
         let at = line.right_center() - vec2(6.0, 0.0);
         painter.text(at, Align2::RIGHT_CENTER, &words, theme::number_font(), color);

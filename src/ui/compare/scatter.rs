@@ -36,10 +36,7 @@ pub fn show(ui: &mut Ui, tables: &[(Method, &MethodTable)], view: &mut ScatterVi
     let extent = Extent { x: [-reach_mm, reach_mm], y: [-reach_mm, reach_mm] };
     let area = ui.available_rect_before_wrap();
     let (left, right) = area.split_left_right_at_fraction(0.5);
-    let views = [
-        ("compare xy", left, [0, 1], text::Y_AXIS),
-        ("compare xz", right, [0, 2], text::Z_AXIS),
-    ];
+    let views = [("compare xy", left, [0, 1], text::Y_AXIS), ("compare xz", right, [0, 2], text::Z_AXIS)];
     for (is_fitted, (name, rect, axes, y_title)) in view.is_fitted.iter_mut().zip(views) {
         let mut half = ui.new_child(UiBuilder::new().max_rect(rect));
         let mut chart = Chart::new(Id::unique(name), text::X_AXIS, y_title, rect.height(), extent);

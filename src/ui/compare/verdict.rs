@@ -13,39 +13,44 @@ use super::model::{Band, CompareModel};
 
 /// Shows the band; `is_explained` toggles the reasons.
 pub fn show(ui: &mut Ui, model: &CompareModel, is_out_of_date: bool, is_explained: &mut bool) {
-    widgets::card(ui, "", |_| {}, |ui| {
-        Frame::new().inner_margin(Margin::symmetric(16, 10)).show(ui, |ui| {
-            let Some(band) = &model.band else {
+    widgets::card(
+        ui,
+        "",
+        |_| {},
+        |ui| {
+            Frame::new().inner_margin(Margin::symmetric(16, 10)).show(ui, |ui| {
+                let Some(band) = &model.band else {
+                    ui.horizontal(|ui| {
+                        ui.set_min_size(vec2(ui.available_width(), 28.0));
+                        ui.label(theme::dim(ui, text::NO_METHOD));
+                    });
+                    return;
+                };
+                let is_wide = fits_one_line(ui, model, band, is_out_of_date);
                 ui.horizontal(|ui| {
-                    ui.set_min_size(vec2(ui.available_width(), 28.0));
-                    ui.label(theme::dim(ui, text::NO_METHOD));
+                    ui.set_min_height(30.0);
+                    verdict_words(ui, band);
+                    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                        if ui.add(Button::new(text::WHY).selected(*is_explained)).clicked() {
+                            *is_explained = !*is_explained;
+                        }
+                        if is_out_of_date {
+                            ui.label(theme::strong(text::OUT_OF_DATE).color(theme::palette(ui).warn));
+                        }
+                        if let (Some(improvement), true) = (&model.improvement, is_wide) {
+                            ui.with_layout(Layout::right_to_left(Align::Center), |ui| better_by(ui, improvement, true));
+                        }
+                    });
                 });
-                return;
-            };
-            let is_wide = fits_one_line(ui, model, band, is_out_of_date);
-            ui.horizontal(|ui| {
-                ui.set_min_height(30.0);
-                verdict_words(ui, band);
-                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    if ui.add(Button::new(text::WHY).selected(*is_explained)).clicked() {
-                        *is_explained = !*is_explained;
-                    }
-                    if is_out_of_date {
-                        ui.label(theme::strong(text::OUT_OF_DATE).color(theme::palette(ui).warn));
-                    }
-                    if let (Some(improvement), true) = (&model.improvement, is_wide) {
-                        ui.with_layout(Layout::right_to_left(Align::Center), |ui| better_by(ui, improvement, true));
-                    }
-                });
+                if let (Some(improvement), false) = (&model.improvement, is_wide) {
+                    ui.horizontal_wrapped(|ui| better_by(ui, improvement, false));
+                }
+                if *is_explained {
+                    reasons(ui, band);
+                }
             });
-            if let (Some(improvement), false) = (&model.improvement, is_wide) {
-                ui.horizontal_wrapped(|ui| better_by(ui, improvement, false));
-            }
-            if *is_explained {
-                reasons(ui, band);
-            }
-        });
-    });
+        },
+    );
 }
 
 /// Whether verdict and comparison have room beside each other.
@@ -89,7 +94,8 @@ fn better_by(ui: &mut Ui, improvement: &Improvement, is_reversed: bool) {
         let color = if percent < 0.0 { palette.good } else { palette.warn };
         theme::strong(format!("{} %", widgets::signed(percent, 0))).color(color)
     });
-    let baseline = text::against(method_short_name(improvement.baseline), &widgets::fixed(improvement.baseline_error_mm, 3));
+    let baseline =
+        text::against(method_short_name(improvement.baseline), &widgets::fixed(improvement.baseline_error_mm, 3));
     let mut words = vec![
         egui::RichText::new(text::maximum_error(text::compared_method(improvement.method))),
         theme::strong(format!("{} mm,", widgets::fixed(improvement.error_mm, 3))),

@@ -1,5 +1,7 @@
 //! Warnings as cards: what is the matter, and what to do about it.
 
+use std::collections::BTreeMap;
+
 use egui::{Frame, Label, Margin, RichText, Sense, Ui, vec2};
 
 use crate::calibrate::{Solution, Warning};
@@ -20,19 +22,11 @@ pub fn show(ui: &mut Ui, solution: &Solution) {
     }
     let mut warnings: Vec<&Warning> = solution.warnings.iter().collect();
     warnings.sort_by_key(|warning| !warning.casts_doubt());
-    let mut shown: Vec<(&str, usize)> = Vec::new();
+    let mut shown: BTreeMap<&str, usize> = BTreeMap::new();
     for warning in warnings {
-        let number = match shown.iter_mut().find(|(code, _)| *code == warning.code()) {
-            Some((_, number)) => {
-                *number += 1;
-                *number
-            }
-            None => {
-                shown.push((warning.code(), 1));
-                1
-            }
-        };
-        if number <= MAX_OF_A_KIND {
+        let number = shown.entry(warning.code()).or_default();
+        *number += 1;
+        if *number <= MAX_OF_A_KIND {
             card(ui, warning);
         }
     }

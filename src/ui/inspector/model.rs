@@ -39,15 +39,6 @@ fn wrapped_deg(difference: f64) -> f64 {
     (difference + 180.0).rem_euclid(360.0) - 180.0
 }
 
-/// Decimals that a standard deviation allows: two figures of it, and no more than `most`.
-#[must_use]
-pub fn decimals_for(std: f64, most: usize) -> usize {
-    if !std.is_finite() || std <= 0.0 {
-        return most;
-    }
-    (0..most).find(|decimals| std * 10_f64.powi(i32::try_from(*decimals).unwrap_or(i32::MAX)) >= 3.0).unwrap_or(most)
-}
-
 /// The homogeneous matrix as text, one row a line, tab-separated so that spreadsheets take it; all digits.
 #[must_use]
 pub fn matrix_text(solution: &Solution) -> String {
@@ -92,14 +83,6 @@ pub fn matrix_cells(solution: &Solution) -> [[String; 4]; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn decimals_follow_the_uncertainty() {
-        assert_eq!(decimals_for(0.04, 4), 2);
-        assert_eq!(decimals_for(0.003, 4), 3);
-        assert_eq!(decimals_for(0.0, 3), 3);
-        assert_eq!(decimals_for(12.0, 3), 0);
-    }
 
     #[test]
     fn a_difference_of_angles_does_not_jump() {

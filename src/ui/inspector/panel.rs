@@ -8,7 +8,8 @@ use crate::fit::ArcFit;
 use crate::session::Reading;
 use crate::text::methods::method_short_name;
 use crate::text::shell as words;
-use crate::ui::widgets::{fixed, number_text, signed, split_row, value_row};
+use crate::ui::figures::{all_digits, decimals_of_std, with_std};
+use crate::ui::widgets::{fixed, number_text, split_row, value_row};
 use crate::ui::{PanelContext, theme};
 
 use super::{findings, model};
@@ -17,6 +18,8 @@ use super::{findings, model};
 pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let Some(document) = context.workbench.document() else { return };
     let results = context.workbench.results();
+    // Room for the scroll bar beside the figures, not over them.
+    ui.spacing_mut().scroll.floating_allocated_width = 8.0;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         ui.add_space(16.0);
@@ -63,8 +66,8 @@ fn capture_section(
         let position = capture.base_from_flange.translation_mm();
         let convention = document.session.robot.pose_convention;
         let angles = convention.angles_deg_from_rotation(&capture.base_from_flange.rotation());
-        triple_row(ui, words::FLANGE_POSITION, [position.x, position.y, position.z].map(|mm| fixed(mm, 2)), "mm");
-        triple_row(ui, &words::angle_names(convention.angle_names), angles.map(|deg| fixed(deg, 2)), "°");
+        triple_row(ui, words::FLANGE_POSITION, position.into(), POSE_DECIMALS, "mm");
+        triple_row(ui, &words::angle_names(convention.angle_names), angles, POSE_DECIMALS, "°");
     }
     if !station.enabled {
         ui.label(theme::dim(ui, words::STATION_LEFT_OUT));
@@ -78,7 +81,7 @@ fn capture_section(
         Some(calibrate::Reading::Arc(arc)) => arc_rows(ui, arc, num_points),
         Some(calibrate::Reading::Refused(reason)) => refusal(ui, &reason.to_string()),
         Some(calibrate::Reading::Point(point)) => {
-            triple_row(ui, words::BALL_IN_SENSOR, [point.x, point.y, point.z].map(|mm| fixed(mm, 3)), "mm");
+            triple_row(ui, words::BALL_IN_SENSOR, (*point).into(), POSE_DECIMALS, "mm");
         }
         None => {}
     }
@@ -94,8 +97,8 @@ fn capture_section(
 
 fn arc_rows(ui: &mut Ui, arc: &ArcFit, num_points: usize) {
     let [_, _, radius_std_mm] = arc.std_mm();
-    let radius = format!("{} ± {} mm", fixed(arc.circle.radius_mm, 3), fixed(radius_std_mm, 3));
-    value_row(ui, words::SECTION_RADIUS, radius).on_hover_text(format!("{} mm", arc.circle.radius_mm));
+    let radius = format!("{} mm", with_std(arc.circle.radius_mm, radius_std_mm));
+    value_row(ui, words::SECTION_RADIUS, radius).on_hover_text(all_digits(arc.circle.radius_mm));
     let extent = words::arc_extent(arc.angle_rad.to_degrees(), arc.num_inliers(), num_points);
     value_row(ui, words::ARC, extent);
     value_row(ui, words::FIT, format!("{} µm RMS", fixed(arc.rms_mm * 1e3, 1)));
@@ -109,8 +112,8 @@ fn station_rows(ui: &mut Ui, solved: &StationSolution) {
     };
     value_row(ui, words::SIDE_OF_BALL, format!("{side}{ratio}")).on_hover_text(words::SIDE_HINT);
     if let Some(sweep) = &solved.sweep {
-        let peak = format!("{} ± {} mm", signed(sweep.peak_mm, 3), fixed(sweep.peak_std_mm, 3));
-        value_row(ui, words::LARGEST_ARC_AT, peak);
+        let peak = format!("{} mm", with_std(sweep.peak_mm, sweep.peak_std_mm));
+        value_row(ui, words::LARGEST_ARC_AT, peak).on_hover_text(all_digits(sweep.peak_mm));
     }
     if let Some(left_out_mm) = solved.leave_one_out_mm {
         value_row(ui, words::LEFT_OUT, format!("{} mm", fixed(left_out_mm, 3))).on_hover_text(words::LEFT_OUT_HINT);
@@ -152,16 +155,17 @@ fn solution_section(ui: &mut Ui, document: &Document, solution: &Solution) {
     let translation_std: Option<[f64; 3]> =
         solution.uncertainty.as_ref().map(|uncertainty| uncertainty.translation_std_mm.into());
     let angle_std = model::angle_std_deg(solution, convention);
+    // One number of decimals a row, so that its figures can be compared: that of the best known of the three.
     let decimals = |std: Option<[f64; 3]>| {
-        std.map_or(3, |std| std.into_iter().map(|std| model::decimals_for(std, 4)).max().unwrap_or(3))
+        std.map_or(POSE_DECIMALS, |std| std.into_iter().map(decimals_of_std).max().unwrap_or(POSE_DECIMALS))
     };
-    let (length_decimals, angle_decimals) = (decimals(translation_std).max(3), decimals(angle_std).max(3));
-    triple_row(ui, words::TRANSLATION, translation.map(|mm| fixed(mm, length_decimals)), "mm");
-    triple_row(ui, &words::angle_names(convention.angle_names), angles.map(|deg| fixed(deg, angle_decimals)), "°");
+    let (length_decimals, angle_decimals) = (decimals(translation_std), decimals(angle_std));
+    triple_row(ui, words::TRANSLATION, translation, length_decimals, "mm");
+    triple_row(ui, &words::angle_names(convention.angle_names), angles, angle_decimals, "°");
     if let (Some(translation_std), Some(angle_std)) = (translation_std, angle_std) {
-        triple_row(ui, words::TRANSLATION_STD, translation_std.map(|mm| fixed(mm, length_decimals)), "mm");
+        triple_row(ui, words::TRANSLATION_STD, translation_std, length_decimals, "mm");
         let label = words::angle_std_names(convention.angle_names);
-        triple_row(ui, &label, angle_std.map(|deg| fixed(deg, angle_decimals)), "°");
+        triple_row(ui, &label, angle_std, angle_decimals, "°");
     } else {
         ui.add(egui::Label::new(theme::dim(ui, words::NO_UNCERTAINTY)).wrap());
     }
@@ -183,18 +187,21 @@ fn matrix(ui: &mut Ui, solution: &Solution) {
             let layout = Layout::right_to_left(Align::Center);
             let inside = egui::Rect::from_min_size(min, vec2(width - 4.0, rect.height()));
             let mut ui = ui.new_child(UiBuilder::new().max_rect(inside).layout(layout));
-            ui.label(number_text(cell)).on_hover_text(exact[(row, column)].to_string());
+            ui.label(number_text(cell)).on_hover_text(all_digits(exact[(row, column)]));
         }
     }
 }
 
+/// Decimals of a pose in mm and degrees, where no uncertainty says otherwise: what controllers report.
+const POSE_DECIMALS: usize = 3;
 /// Width of one of three figures in a row, points: room for seven digits, sign and point.
 const FIGURE_WIDTH: f32 = 64.0;
 /// Width of a row's unit, points.
 const UNIT_WIDTH: f32 = 28.0;
 
 /// Three figures with their unit, each right-aligned in a column of its own, the unit in a dimmer tone.
-fn triple_row(ui: &mut Ui, label: &str, values: [String; 3], unit: &str) {
+/// Hovering a figure shows all its digits.
+fn triple_row(ui: &mut Ui, label: &str, values: [f64; 3], decimals: usize, unit: &str) {
     split_row(ui, label, |ui| {
         ui.spacing_mut().item_spacing.x = 0.0;
         let cell = |width| egui::vec2(width, theme::ROW_HEIGHT);
@@ -206,7 +213,7 @@ fn triple_row(ui: &mut Ui, label: &str, values: [String; 3], unit: &str) {
         for value in values.into_iter().rev() {
             ui.allocate_ui_with_layout(cell(FIGURE_WIDTH), Layout::right_to_left(Align::Center), |ui| {
                 ui.set_min_width(FIGURE_WIDTH);
-                ui.label(number_text(value));
+                ui.label(number_text(fixed(value, decimals))).on_hover_text(all_digits(value));
             });
         }
     });

@@ -45,10 +45,7 @@ pub fn rows(session: &Session, unfolded: &BTreeSet<usize>) -> Vec<Row> {
 pub fn pose_figures(session: &Session, station_idx: usize, capture_idx: usize) -> Option<[f64; 6]> {
     let capture = session.stations.get(station_idx)?.captures.get(capture_idx)?;
     let position = capture.base_from_flange.translation_mm();
-    let [a, b, c] = session
-        .robot
-        .pose_convention
-        .angles_deg_from_rotation(&capture.base_from_flange.rotation());
+    let [a, b, c] = session.robot.pose_convention.angles_deg_from_rotation(&capture.base_from_flange.rotation());
     Some([position.x, position.y, position.z, a, b, c])
 }
 
@@ -88,12 +85,11 @@ pub fn num_refused(session: &Session, results: &Results) -> usize {
         .iter()
         .enumerate()
         .filter(|(_, station)| station.enabled)
-        .flat_map(|(station_idx, station)| (0..station.captures.len()).map(move |capture_idx| (station_idx, capture_idx)))
+        .flat_map(|(station_idx, station)| {
+            (0..station.captures.len()).map(move |capture_idx| (station_idx, capture_idx))
+        })
         .filter(|&(station_idx, capture_idx)| {
-            matches!(
-                results.measured.reading(station_idx, capture_idx),
-                Some(calibrate::Reading::Refused(_))
-            )
+            matches!(results.measured.reading(station_idx, capture_idx), Some(calibrate::Reading::Refused(_)))
         })
         .count()
 }

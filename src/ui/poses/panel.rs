@@ -13,10 +13,23 @@ use crate::ui::{PanelContext, theme};
 
 use super::model::{self, Row};
 
-/// Decimals of a position in mm: what controllers report.
-const POSITION_DECIMALS: usize = 3;
-/// Decimals of an angle in degrees: what controllers report.
-const ANGLE_DECIMALS: usize = 3;
+/// Below this width, points, the columns that other places show as well give way, and figures lose a digit.
+const NARROW_WIDTH: f32 = 700.0;
+
+/// What the width allows.
+#[derive(Clone, Copy)]
+struct Density {
+    is_narrow: bool,
+    /// Of positions in mm and angles in degrees; controllers report three.
+    decimals: usize,
+}
+
+impl Density {
+    fn of(ui: &Ui) -> Self {
+        let is_narrow = ui.available_width() < NARROW_WIDTH;
+        Self { is_narrow, decimals: if is_narrow { 2 } else { 3 } }
+    }
+}
 
 /// What is unfolded, and what the check of the session says of its stations.
 #[derive(Debug, Default)]
@@ -117,15 +130,20 @@ fn show_table(
     let angle_names = document.session.robot.pose_convention.angle_names;
     // Cells touch, so that the hairlines between rows run through.
     ui.spacing_mut().item_spacing.x = 0.0;
-    let mut builder = table(ui, "poses")
+    let density = Density::of(ui);
+    let mut builder = table(ui, if density.is_narrow { "narrow poses" } else { "poses" })
         .sense(Sense::click())
-        .column(Column::exact(44.0))
+        .column(Column::exact(if density.is_narrow { 36.0 } else { 44.0 }))
         .column(Column::exact(28.0))
-        .column(Column::initial(96.0).at_least(56.0).clip(true))
-        .column(Column::exact(48.0))
-        .columns(number_column(64.0), 6)
-        .column(Column::exact(80.0))
-        .column(Column::exact(72.0));
+        .column(Column::initial(if density.is_narrow { 48.0 } else { 96.0 }).at_least(48.0).clip(true));
+    if !density.is_narrow {
+        builder = builder.column(Column::exact(48.0));
+    }
+    builder = builder.columns(number_column(56.0), 6);
+    if !density.is_narrow {
+        builder = builder.column(Column::exact(80.0));
+    }
+    builder = builder.column(Column::exact(if density.is_narrow { 52.0 } else { 72.0 }));
     if let Some(row_idx) = moved_to {
         builder = builder.scroll_to_row(row_idx, None);
     }
@@ -134,14 +152,18 @@ fn show_table(
             head(&mut header, words::USED);
             head(&mut header, "");
             head(&mut header, words::STATION);
-            head(&mut header, words::SIDE);
+            if !density.is_narrow {
+                head(&mut header, words::SIDE);
+            }
             for name in ["x", "y", "z"] {
                 number_head(&mut header, &format!("{name} / mm"));
             }
             for name in angle_names {
                 number_head(&mut header, &format!("{name} / °"));
             }
-            number_head(&mut header, words::CAPTURES);
+            if !density.is_narrow {
+                number_head(&mut header, words::CAPTURES);
+            }
             head(&mut header, words::CHECK);
         })
         .body(|body| {
@@ -150,9 +172,11 @@ fn show_table(
                 table_row.set_overline(true);
                 table_row.set_selected(is_selected(context, row));
                 match row {
-                    Row::Station(station_idx) => show_station(&mut table_row, context, document, state, station_idx),
+                    Row::Station(station_idx) => {
+                        show_station(&mut table_row, context, document, state, station_idx, density);
+                    }
                     Row::Capture { station_idx, capture_idx } => {
-                        show_capture(&mut table_row, context, document, station_idx, capture_idx);
+                        show_capture(&mut table_row, context, document, [station_idx, capture_idx], density);
                     }
                 }
                 if table_row.response().clicked() {
@@ -168,6 +192,7 @@ fn show_station(
     document: &Document,
     state: &mut PosesState,
     station_idx: usize,
+    density: Density,
 ) {
     let Some(station) = document.session.stations.get(station_idx) else { return };
     row.col(|ui| {
@@ -195,12 +220,17 @@ fn show_station(
         let color = if station.enabled { theme::palette(ui).text } else { theme::palette(ui).text_dim };
         ui.label(RichText::new(&station.label).color(color));
     });
-    row.col(|ui| {
-        ui.add_space(4.0);
-        ui.label(theme::dim(ui, words::side(station.side)));
-    });
-    pose_cells(row, document, station_idx, 0, station.enabled);
-    number_cell(row, station.captures.len().to_string());
+    if !density.is_narrow {
+        row.col(|ui| {
+            ui.add_space(4.0);
+            ui.label(theme::dim(ui, words::side(station.side)));
+        });
+    }
+    let figures = model::pose_figures(&document.session, station_idx, 0);
+    pose_cells(row, figures, density, station.enabled);
+    if !density.is_narrow {
+        number_cell(row, station.captures.len().to_string());
+    }
     row.col(|ui| {
         ui.add_space(12.0);
         if station.enabled {
@@ -219,8 +249,8 @@ fn show_capture(
     row: &mut TableRow<'_, '_>,
     context: &PanelContext<'_>,
     document: &Document,
-    station_idx: usize,
-    capture_idx: usize,
+    [station_idx, capture_idx]: [usize; 2],
+    density: Density,
 ) {
     let Some(station) = document.session.stations.get(station_idx) else { return };
     row.col(|_| {});
@@ -229,14 +259,15 @@ fn show_capture(
         ui.add_space(16.0);
         ui.label(theme::dim(ui, words::capture_name(&station.label, capture_idx + 1)));
     });
-    row.col(|_| {});
-    pose_cells(row, document, station_idx, capture_idx, false);
-    row.col(|_| {});
+    if !density.is_narrow {
+        row.col(|_| {});
+    }
+    pose_cells(row, model::pose_figures(&document.session, station_idx, capture_idx), density, false);
+    if !density.is_narrow {
+        row.col(|_| {});
+    }
     row.col(|ui| {
-        let refusal = context
-            .workbench
-            .results()
-            .and_then(|results| model::refusal(results, station_idx, capture_idx));
+        let refusal = context.workbench.results().and_then(|results| model::refusal(results, station_idx, capture_idx));
         if let Some(reason) = refusal {
             ui.add_space(12.0);
             ui.label(RichText::new("!").color(theme::palette(ui).warn)).on_hover_text(reason);
@@ -244,12 +275,10 @@ fn show_capture(
     });
 }
 
-fn pose_cells(row: &mut TableRow<'_, '_>, document: &Document, station_idx: usize, capture_idx: usize, is_bold: bool) {
-    let Some(figures) = model::pose_figures(&document.session, station_idx, capture_idx) else { return };
-    for (idx, figure) in figures.into_iter().enumerate() {
-        let decimals = if idx < 3 { POSITION_DECIMALS } else { ANGLE_DECIMALS };
-        let text = fixed(figure, decimals);
-        if is_bold {
+fn pose_cells(row: &mut TableRow<'_, '_>, figures: Option<[f64; 6]>, density: Density, takes_part: bool) {
+    for figure in figures.into_iter().flatten() {
+        let text = fixed(figure, density.decimals);
+        if takes_part {
             number_cell(row, text);
         } else {
             faded_number_cell(row, text);

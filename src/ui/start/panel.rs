@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use egui::{
-    Align, Align2, CornerRadius, FontSelection, Key, Layout, Rect, ScrollArea, Sense, Stroke, TextEdit, TextStyle,
-    TextWrapMode, Ui, WidgetInfo, WidgetText, Role, pos2, vec2,
+    Align, Align2, CornerRadius, FontSelection, Key, Layout, Rect, Role, ScrollArea, Sense, Stroke, TextEdit,
+    TextStyle, TextWrapMode, Ui, WidgetInfo, WidgetText, pos2, vec2,
 };
 
 use crate::app::jobs::{JobOutcome, Slot, Wake};
@@ -72,6 +72,8 @@ pub fn show(
     recent_files: &[PathBuf],
     actions: &mut Vec<Action>,
 ) {
+    // Room for the scroll bar beside the cards, not over them.
+    ui.spacing_mut().scroll.floating_allocated_width = 8.0;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         if let Some(document) = context.workbench.document() {
             overview::show(ui, document);

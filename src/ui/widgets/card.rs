@@ -10,11 +10,12 @@ const HEADER_HEIGHT: f32 = 32.0;
 /// A white card as wide as the space available: a header row with `title` and what `right` puts at its right end,
 /// a hairline, then the body without margins, so that tables reach the borders. An empty title leaves the header out.
 pub fn card<R>(ui: &mut Ui, title: &str, right: impl FnOnce(&mut Ui), body: impl FnOnce(&mut Ui) -> R) -> R {
-    frame(ui).show(ui, |ui| {
-        ui.set_width(ui.available_width());
-        contents(ui, title, right, body)
-    })
-    .inner
+    frame(ui)
+        .show(ui, |ui| {
+            ui.set_width(ui.available_width());
+            contents(ui, title, right, body)
+        })
+        .inner
 }
 
 /// The same card, of a given height over all, points.
@@ -34,10 +35,7 @@ pub fn card_with_height<R>(
 
 fn frame(ui: &Ui) -> Frame {
     let palette = theme::palette(ui);
-    Frame::new()
-        .fill(palette.surface)
-        .stroke(Stroke::new(1.0, palette.hairline))
-        .corner_radius(theme::RADIUS)
+    Frame::new().fill(palette.surface).stroke(Stroke::new(1.0, palette.hairline)).corner_radius(theme::RADIUS)
 }
 
 fn contents<R>(ui: &mut Ui, title: &str, right: impl FnOnce(&mut Ui), body: impl FnOnce(&mut Ui) -> R) -> R {

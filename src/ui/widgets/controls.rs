@@ -1,6 +1,6 @@
 //! Small controls whose visible text is shorter than the name that a screen reader needs.
 
-use egui::{Button, Response, RichText, Ui, WidgetInfo, Role};
+use egui::{Button, Response, RichText, Role, Ui, WidgetInfo};
 
 use crate::ui::theme;
 

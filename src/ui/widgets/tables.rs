@@ -9,7 +9,7 @@ use super::number::{number, number_text};
 
 /// Begins a table as the whole window has them: cells centred in height, selectable rows, and no stripes.
 /// Set the columns, then `.header(theme::ROW_HEIGHT, …)` and `.body(…)`.
-pub fn table<'a>(ui: &'a mut Ui, id_salt: impl egui::AsIdSalt) -> TableBuilder<'a> {
+pub fn table(ui: &mut Ui, id_salt: impl egui::AsIdSalt) -> TableBuilder<'_> {
     ui.spacing_mut().item_spacing.y = 0.0;
     TableBuilder::new(ui)
         .id_salt(id_salt)

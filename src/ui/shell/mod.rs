@@ -1,19 +1,21 @@
 //! The window's frame around the panels, and what it does with actions and commands.
 
+mod documents;
+mod news;
+
 use std::sync::Arc;
 
 use egui::{CentralPanel, Context, Frame, Margin, Panel, Stroke, Ui, ViewportCommand};
 
 use crate::app::jobs::Wake;
 use crate::app::{Command, Workbench};
-use crate::calibrate::Method;
 use crate::text::shell as words;
 
 use super::actions::{self, Action};
 use super::arcs::ArcsState;
 use super::compare::CompareState;
-use super::dialogs::{self, SavePath, SavePathAnswer, UnsavedAnswer};
-use super::file_dialog::{Answer, FileDialog, Purpose};
+use super::dialogs::{self, SavePath};
+use super::file_dialog::{FileDialog, Purpose};
 use super::persisted::Persisted;
 use super::poses::panel::PosesState;
 use super::rail::{self, Step};
@@ -28,8 +30,6 @@ const BOTTOM_HEIGHT: f32 = 40.0;
 const RAIL_WIDTH: f32 = 148.0;
 /// Width of the inspector, points.
 const INSPECTOR_WIDTH: f32 = 308.0;
-/// Seconds after which a notice of something done goes away by itself.
-const DONE_NOTICE_SECONDS: f64 = 6.0;
 
 /// Something that waits for the answer about unsaved changes.
 #[derive(Clone, Debug, PartialEq)]
@@ -151,7 +151,7 @@ impl Shell {
         let ctx = ui.ctx().clone();
         let mut actions = actions::pressed(&ctx, &self.workbench);
         let mut commands = Vec::new();
-        self.open_dropped_files(&ctx, &mut commands);
+        Self::open_dropped_files(&ctx, &mut commands);
         self.bars(ui, &mut actions, &mut commands);
         self.center(ui, &mut actions, &mut commands);
         self.questions(&ctx);
@@ -184,12 +184,9 @@ impl Shell {
             rail::show(ui, &self.workbench, &self.selection, self.step, actions);
         });
         if self.persisted.inspector_open && self.workbench.document().is_some() {
-            Panel::right("inspector").resizable(false).exact_size(INSPECTOR_WIDTH).frame(bar).show(ui, |ui| {
-                let mut context = PanelContext {
-                    workbench: &self.workbench,
-                    selection: &mut self.selection,
-                    commands,
-                };
+            let beside = surface.inner_margin(Margin { left: 16, right: 8, top: 0, bottom: 0 });
+            Panel::right("inspector").resizable(false).exact_size(INSPECTOR_WIDTH).frame(beside).show(ui, |ui| {
+                let mut context = PanelContext { workbench: &self.workbench, selection: &mut self.selection, commands };
                 inspector::panel::show(ui, &mut context);
             });
         }
@@ -202,11 +199,7 @@ impl Shell {
                 empty_state(ui, actions);
                 return;
             }
-            let mut context = PanelContext {
-                workbench: &self.workbench,
-                selection: &mut self.selection,
-                commands,
-            };
+            let mut context = PanelContext { workbench: &self.workbench, selection: &mut self.selection, commands };
             match self.step {
                 Step::Session => {
                     start::panel::show(ui, &mut context, &mut self.start, &self.persisted.recent_files, actions);
@@ -218,7 +211,7 @@ impl Shell {
         });
     }
 
-    fn open_dropped_files(&self, ctx: &Context, commands: &mut Vec<Command>) {
+    fn open_dropped_files(ctx: &Context, commands: &mut Vec<Command>) {
         let (dropped, is_hovering) = ctx.input(|input| {
             let paths: Vec<_> = input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect();
             (paths, !input.raw.hovered_files.is_empty())
@@ -228,31 +221,6 @@ impl Shell {
         }
         // One document at a time: of several files, the first.
         commands.extend(dropped.into_iter().take(1).map(Command::Open));
-    }
-
-    fn questions(&mut self, ctx: &Context) {
-        dialogs::help(ctx, &self.workbench, &mut self.is_help_open);
-        if let Some(answer) = self.save_path.as_mut().and_then(|save_path| save_path.ask(ctx)) {
-            self.save_path = None;
-            match answer {
-                SavePathAnswer::Save(path) => self.workbench.apply(Command::SaveAs(path)),
-                SavePathAnswer::Cancel => self.after_saving = None,
-            }
-        }
-        let Some(document) = self.workbench.document().filter(|_| self.unsaved_question.is_some()) else {
-            self.unsaved_question = None;
-            return;
-        };
-        let Some(answer) = dialogs::ask_unsaved(ctx, &document.title()) else { return };
-        let Some(pending) = self.unsaved_question.take() else { return };
-        match answer {
-            UnsavedAnswer::Save => {
-                self.after_saving = Some(pending);
-                self.save();
-            }
-            UnsavedAnswer::Discard => self.carry_out(ctx, pending),
-            UnsavedAnswer::Cancel => {}
-        }
     }
 
     fn perform(&mut self, ctx: &Context, action: Action, commands: &mut Vec<Command>) {
@@ -269,177 +237,6 @@ impl Shell {
             Action::Inspector => self.persisted.inspector_open = !self.persisted.inspector_open,
             Action::GoTo(step) => self.step = step,
         }
-    }
-
-    /// Applies a command; one that puts another document on the bench asks first if changes would be lost.
-    pub fn request(&mut self, command: Command) {
-        let replaces = matches!(command, Command::Open(_) | Command::OpenSample(_) | Command::CloseDocument);
-        if replaces && self.workbench.document().is_some_and(crate::app::Document::is_unsaved) {
-            self.unsaved_question = Some(Pending::Command(command));
-            return;
-        }
-        self.carry_out_command(command);
-    }
-
-    fn carry_out(&mut self, ctx: &Context, pending: Pending) {
-        match pending {
-            Pending::Command(command) => self.carry_out_command(command),
-            Pending::Quit => {
-                self.is_quitting = true;
-                ctx.send_viewport_cmd(ViewportCommand::Close);
-            }
-        }
-    }
-
-    fn carry_out_command(&mut self, command: Command) {
-        if matches!(command, Command::Open(_) | Command::OpenSample(_)) {
-            // What went wrong with the last file does not concern this one.
-            let stale: Vec<u64> = self.workbench.notices().iter().map(|notice| notice.id).collect();
-            for id in stale {
-                self.workbench.apply(Command::DismissNotice(id));
-            }
-            self.step = Step::Session;
-        }
-        self.workbench.apply(command);
-    }
-
-    fn save(&mut self) {
-        match self.workbench.document() {
-            Some(document) if document.path.is_none() => self.save_as(),
-            _ => self.workbench.apply(Command::Save),
-        }
-    }
-
-    fn save_as(&mut self) {
-        let name = self.suggested_name();
-        self.file_dialog.start(Purpose::Save, name, Arc::clone(&self.wake));
-    }
-
-    fn suggested_name(&self) -> String {
-        let Some(document) = self.workbench.document() else { return String::new() };
-        if document.path.is_some() {
-            return document.title();
-        }
-        let name: String = document
-            .session
-            .name
-            .chars()
-            .map(|letter| if letter.is_alphanumeric() || "-_.".contains(letter) { letter } else { '-' })
-            .collect();
-        format!("{name}.json")
-    }
-
-    fn take_dialog_answer(&mut self) {
-        match self.file_dialog.poll() {
-            Some(Answer::Chosen(Purpose::Open, path)) => self.request(Command::Open(path)),
-            Some(Answer::Chosen(Purpose::Save, path)) => self.workbench.apply(Command::SaveAs(path)),
-            Some(Answer::Unavailable(Purpose::Open)) => {
-                self.step = Step::Session;
-                self.start.ask_for_path(words::NO_FILE_DIALOG);
-            }
-            Some(Answer::Unavailable(Purpose::Save)) => {
-                let folder = std::env::current_dir().unwrap_or_default();
-                let suggestion = folder.join(self.suggested_name());
-                self.save_path = Some(SavePath::new(suggestion.display().to_string()));
-            }
-            Some(Answer::Cancelled) => self.after_saving = None,
-            None => {}
-        }
-    }
-
-    /// Once the changes are in the file, does what waited for it; if saving failed, forgets it: the user sees why.
-    fn go_on_after_saving(&mut self, ctx: &Context) {
-        if self.after_saving.is_none() || self.file_dialog.is_open() || self.save_path.is_some() {
-            return;
-        }
-        let is_saved = !self.workbench.document().is_some_and(crate::app::Document::is_unsaved);
-        if is_saved {
-            if let Some(pending) = self.after_saving.take() {
-                self.carry_out(ctx, pending);
-            }
-        } else if !self.workbench.is_busy() {
-            self.after_saving = None;
-        }
-    }
-
-    fn guard_closing(&mut self, ctx: &Context) {
-        let is_unsaved = self.workbench.document().is_some_and(crate::app::Document::is_unsaved);
-        if ctx.input(|input| input.viewport().close_requested()) && is_unsaved && !self.is_quitting {
-            ctx.send_viewport_cmd(ViewportCommand::CancelClose);
-            self.unsaved_question = Some(Pending::Quit);
-        }
-    }
-
-    fn notice_new_document(&mut self, ctx: &Context) {
-        let Some(document) = self.workbench.document() else {
-            self.seen_revision = 0;
-            self.set_title(ctx, words::PROGRAM.to_owned());
-            return;
-        };
-        let history = &document.history;
-        let is_new = history.undo_label().is_none() && history.redo_label().is_none();
-        if document.revision != self.seen_revision {
-            self.seen_revision = document.revision;
-            if is_new {
-                self.selection = Selection {
-                    method: self.selection.method,
-                    ..Selection::default()
-                };
-                self.poses = PosesState::default();
-                self.arcs = ArcsState::default();
-                self.compare = CompareState::default();
-                self.seen_results = 0;
-            }
-        }
-        if let Some(path) = &document.path
-            && self.persisted.recent_files.first() != Some(path)
-        {
-            self.persisted.note_recent(path);
-        }
-        let dot = if document.is_unsaved() { " ●" } else { "" };
-        let title = format!("{}{dot} – {}", document.title(), words::PROGRAM);
-        self.set_title(ctx, title);
-    }
-
-    fn set_title(&mut self, ctx: &Context, title: String) {
-        if self.window_title != title {
-            self.window_title.clone_from(&title);
-            ctx.send_viewport_cmd(ViewportCommand::Title(title));
-        }
-    }
-
-    /// With a document's first results, shows the method to be trusted most among those that found something.
-    fn notice_new_results(&mut self) {
-        let Some(results) = self.workbench.results() else { return };
-        if self.seen_results == results.revision {
-            return;
-        }
-        let is_first = self.seen_results == 0;
-        self.seen_results = results.revision;
-        let has_solution = |method: &Method| results.method(*method).is_some_and(|result| result.outcome.is_ok());
-        if is_first || !has_solution(&self.selection.method) {
-            let by_trust = [Method::BallBundle, Method::BallMaxArc, Method::BallFixedPoint, Method::BallMaxArcStep];
-            if let Some(method) = by_trust.into_iter().find(has_solution) {
-                self.selection.method = method;
-            }
-        }
-    }
-
-    fn dismiss_done_notice(&mut self, ctx: &Context) {
-        let now = ctx.input(|input| input.time);
-        let newest = self.workbench.notices().iter().find(|notice| notice.kind == crate::app::NoticeKind::Done);
-        let Some(id) = newest.map(|notice| notice.id) else {
-            self.done_notice = None;
-            return;
-        };
-        let (known_id, since) = *self.done_notice.get_or_insert((id, now));
-        if known_id != id {
-            self.done_notice = Some((id, now));
-        } else if now - since > DONE_NOTICE_SECONDS {
-            self.workbench.apply(Command::DismissNotice(id));
-            self.done_notice = None;
-        }
-        ctx.request_repaint_after(std::time::Duration::from_secs_f64(DONE_NOTICE_SECONDS));
     }
 
     /// Theme and scale as chosen in the menu; a scale set with the keyboard is taken over.

@@ -1,0 +1,89 @@
+//! What the window does by itself when a document, results or a notice have come.
+
+use std::time::Duration;
+
+use egui::{Context, ViewportCommand};
+
+use crate::app::{Command, NoticeKind};
+use crate::calibrate::Method;
+use crate::text::shell as words;
+use crate::ui::Selection;
+use crate::ui::arcs::ArcsState;
+use crate::ui::compare::CompareState;
+use crate::ui::poses::panel::PosesState;
+
+use super::Shell;
+
+/// Seconds after which a notice of something done goes away by itself.
+const DONE_NOTICE_SECONDS: f64 = 6.0;
+
+impl Shell {
+    pub(super) fn notice_new_document(&mut self, ctx: &Context) {
+        let Some(document) = self.workbench.document() else {
+            self.seen_revision = 0;
+            self.set_title(ctx, words::PROGRAM.to_owned());
+            return;
+        };
+        let history = &document.history;
+        let is_new = history.undo_label().is_none() && history.redo_label().is_none();
+        if document.revision != self.seen_revision {
+            self.seen_revision = document.revision;
+            if is_new {
+                self.selection = Selection { method: self.selection.method, ..Selection::default() };
+                self.poses = PosesState::default();
+                self.arcs = ArcsState::default();
+                self.compare = CompareState::default();
+                self.seen_results = 0;
+            }
+        }
+        if let Some(path) = &document.path
+            && self.persisted.recent_files.first() != Some(path)
+        {
+            self.persisted.note_recent(path);
+        }
+        let dot = if document.is_unsaved() { " ●" } else { "" };
+        let title = format!("{}{dot} – {}", document.title(), words::PROGRAM);
+        self.set_title(ctx, title);
+    }
+
+    pub(super) fn set_title(&mut self, ctx: &Context, title: String) {
+        if self.window_title != title {
+            self.window_title.clone_from(&title);
+            ctx.send_viewport_cmd(ViewportCommand::Title(title));
+        }
+    }
+
+    /// With a document's first results, shows the method to be trusted most among those that found something.
+    pub(super) fn notice_new_results(&mut self) {
+        let Some(results) = self.workbench.results() else { return };
+        if self.seen_results == results.revision {
+            return;
+        }
+        let is_first = self.seen_results == 0;
+        self.seen_results = results.revision;
+        let has_solution = |method: &Method| results.method(*method).is_some_and(|result| result.outcome.is_ok());
+        if is_first || !has_solution(&self.selection.method) {
+            let by_trust = [Method::BallBundle, Method::BallMaxArc, Method::BallFixedPoint, Method::BallMaxArcStep];
+            if let Some(method) = by_trust.into_iter().find(has_solution) {
+                self.selection.method = method;
+            }
+        }
+    }
+
+    pub(super) fn dismiss_done_notice(&mut self, ctx: &Context) {
+        let now = ctx.input(|input| input.time);
+        let newest = self.workbench.notices().iter().find(|notice| notice.kind == NoticeKind::Done);
+        let Some(id) = newest.map(|notice| notice.id) else {
+            self.done_notice = None;
+            return;
+        };
+        let (known_id, since) = *self.done_notice.get_or_insert((id, now));
+        if known_id != id {
+            self.done_notice = Some((id, now));
+        } else if now - since > DONE_NOTICE_SECONDS {
+            self.workbench.apply(Command::DismissNotice(id));
+            self.done_notice = None;
+        }
+        ctx.request_repaint_after(Duration::from_secs_f64(DONE_NOTICE_SECONDS));
+    }
+}
