@@ -8,6 +8,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 pub mod check;
+pub mod report;
 pub mod screenshot;
 pub mod simulate;
 pub mod solve;
@@ -40,6 +41,8 @@ pub enum Command {
     Check(check::CheckArgs),
     /// Writes a simulated session with its truth
     Simulate(simulate::SimulateArgs),
+    /// Not available in this version: says what to use instead
+    Report(report::ReportArgs),
     /// Draws a step of the window into a PNG file, without a display
     Screenshot(screenshot::ScreenshotArgs),
 }
@@ -52,6 +55,7 @@ impl Command {
             Self::Solve(args) => solve::run(args),
             Self::Check(args) => check::run(args),
             Self::Simulate(args) => simulate::run(args),
+            Self::Report(args) => report::run(args),
             Self::Screenshot(args) => screenshot::run(args),
         }
     }

@@ -30,8 +30,12 @@ pub const MATRICES: &str = "matrices";
 pub const STATION: &str = "station";
 /// Head over the ball's coordinates.
 pub const BALL_IN_BASE: &str = "ball in base / mm";
-/// Head over the errors from the first station.
-pub const ERROR_FROM_FIRST: &str = "error from station 1 / mm";
+/// Head over the errors from the first station used.
+#[must_use]
+pub fn error_from_first(label: &str) -> String {
+    format!("error from station {label} / mm")
+}
+
 /// Head over the errors about the mean.
 pub const ERROR_FROM_MEAN: &str = "error about the mean / mm";
 /// Head of the error's size.

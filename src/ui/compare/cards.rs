@@ -129,7 +129,7 @@ fn plain(
     let mut row = RowCells::new(ui, theme::ROW_HEIGHT);
     row.head(widths[0], text::STATION, Align2::LEFT_CENTER);
     row.head(widths[1..4].iter().sum(), text::BALL_IN_BASE, Align2::CENTER_CENTER);
-    row.head(widths[4..7].iter().sum(), reference_head(reference), Align2::CENTER_CENTER);
+    row.head(widths[4..7].iter().sum(), &reference_head(reference, table), Align2::CENTER_CENTER);
     row.head(widths[7], text::ERROR_SIZE, Align2::RIGHT_CENTER);
     let mut row = RowCells::new(ui, theme::ROW_HEIGHT - 2.0);
     row.head(widths[0], "", Align2::LEFT_CENTER);
@@ -148,10 +148,12 @@ fn plain(
     }
 }
 
-const fn reference_head(reference: ErrorReference) -> &'static str {
-    match reference {
-        ErrorReference::FirstStation => text::ERROR_FROM_FIRST,
-        ErrorReference::Mean => text::ERROR_FROM_MEAN,
+fn reference_head(reference: ErrorReference, table: &MethodTable) -> String {
+    match (reference, table.used().next()) {
+        (ErrorReference::FirstStation, Some((station_idx, _))) => {
+            text::error_from_first(&table.rows[station_idx].label)
+        }
+        _ => text::ERROR_FROM_MEAN.to_owned(),
     }
 }
 
