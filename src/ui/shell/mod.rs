@@ -234,7 +234,6 @@ impl Shell {
             Action::Undo => commands.push(Command::Undo),
             Action::Redo => commands.push(Command::Redo),
             Action::Help => self.is_help_open = !self.is_help_open,
-            Action::Inspector => self.persisted.inspector_open = !self.persisted.inspector_open,
             Action::GoTo(step) => self.step = step,
         }
     }
