@@ -1,4 +1,4 @@
-//! The window: egui panels over the [`Workbench`](crate::app::Workbench), the only code that names egui.
+//! The window: egui panels over the [`Workbench`], the only code that names egui.
 //!
 //! Every panel is a function of the shared [`PanelContext`] and a state of its own; it queues commands and changes
 //! nothing itself. A step of the rail is a folder with its panel, the model it draws, and the painting.

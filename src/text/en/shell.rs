@@ -175,7 +175,8 @@ pub const LEFT_OUT_HINT: &str = "Distance between this station's ball and the ba
 /// Row of the inspector for a reduced point.
 pub const BALL_IN_SENSOR: &str = "ball in sensor";
 /// What the side's ratio means.
-pub const SIDE_HINT: &str = "The side of the laser plane on which the ball's centre lies; the other side costs that many times as much";
+pub const SIDE_HINT: &str =
+    "The side of the laser plane on which the ball's centre lies; the other side costs that many times as much";
 /// Row of the inspector.
 pub const TRANSLATION: &str = "x y z";
 /// Row of the inspector.
@@ -251,7 +252,8 @@ pub const SHORTCUTS: &str = "Shortcuts";
 /// Heading of the help window.
 pub const ABOUT: &str = "About";
 /// The program in a sentence.
-pub const ABOUT_TEXT: &str = "A workbench for the hand-eye calibration of robot-mounted laser profilers, after Lin and Mu (2019).";
+pub const ABOUT_TEXT: &str =
+    "A workbench for the hand-eye calibration of robot-mounted laser profilers, after Lin and Mu (2019).";
 /// Shortcut's explanation.
 pub const KEYS_RAIL: &str = "go to a step of the rail";
 /// Shortcut's explanation.
@@ -270,13 +272,13 @@ pub fn version(version: &str) -> String {
 }
 
 /// The one line told where no window can be opened for want of a display.
-pub const NO_DISPLAY: &str = "the window needs a display, and there is none here (neither DISPLAY nor WAYLAND_DISPLAY is set)";
+pub const NO_DISPLAY: &str =
+    "the window needs a display, and there is none here (neither DISPLAY nor WAYLAND_DISPLAY is set)";
 /// The one line told where a library is missing.
-pub const MISSING_LIBRARIES: &str =
-    "the window could not be opened; on Debian and Ubuntu: apt install libxkbcommon-x11-0 libxcursor1 libxi6 libgl1 libegl1";
+pub const MISSING_LIBRARIES: &str = "the window could not be opened; on Debian and Ubuntu: apt install libxkbcommon-x11-0 libxcursor1 libxi6 libgl1 libegl1";
 /// The one line told where there is no OpenGL.
 pub const NO_OPENGL: &str = "the window needs OpenGL; on Debian and Ubuntu: apt install libgl1 libegl1 libgl1-mesa-dri";
 /// The one line told where the display does not answer.
 pub const DEAD_DISPLAY: &str = "the window could not reach the display";
 /// What works all the same.
-pub const WITHOUT_WINDOW: &str = "`handeye solve FILE` and `handeye report FILE` work without a window";
+pub const WITHOUT_WINDOW: &str = "`handeye solve FILE` works without a window";
