@@ -3,7 +3,9 @@
 use egui::{Align, Layout, ProgressBar, RichText, Ui};
 
 use crate::app::{Command, Notice, NoticeKind, Workbench};
+use crate::session::Reading;
 use crate::text::shell as words;
+use crate::text::start::captures as captures_text;
 
 use super::actions::Action;
 use super::rail::Step;
@@ -51,10 +53,11 @@ fn progress_or_summary(ui: &mut Ui, workbench: &Workbench, commands: &mut Vec<Co
     }
     let (Some(document), Some(results)) = (workbench.document(), workbench.results()) else { return };
     if workbench.results_are_current() {
-        let stations = document.session.stations.iter().filter(|station| station.enabled);
-        let (num_stations, num_profiles) =
-            stations.fold((0, 0), |(stations, profiles), station| (stations + 1, profiles + station.captures.len()));
-        let summary = words::summary(num_stations, num_profiles, results.elapsed.as_millis());
+        let stations = || document.session.stations.iter().filter(|station| station.enabled);
+        let captures = || stations().flat_map(|station| &station.captures);
+        let num_points = captures().filter(|capture| matches!(capture.reading, Reading::Point(_))).count();
+        let captures = captures_text(captures().count() - num_points, num_points);
+        let summary = words::summary(stations().count(), &captures, results.elapsed.as_millis());
         ui.label(theme::dim(ui, summary));
     } else {
         let color = theme::palette(ui).warn;

@@ -136,9 +136,9 @@ pub fn count(number: usize, singular: &str) -> String {
 
 /// What was solved, and in what time.
 #[must_use]
-pub fn summary(num_stations: usize, num_profiles: usize, elapsed_ms: u128) -> String {
+pub fn summary(num_stations: usize, captures: &str, elapsed_ms: u128) -> String {
     let elapsed = if elapsed_ms == 0 { "under 1 ms".to_owned() } else { format!("{elapsed_ms} ms") };
-    format!("{}, {}, solved in {elapsed}", count(num_stations, "station"), count(num_profiles, "profile"))
+    format!("{}, {captures}, solved in {elapsed}", count(num_stations, "station"))
 }
 
 /// Heading of the inspector.
@@ -173,7 +173,7 @@ pub const LEFT_OUT: &str = "left out";
 /// What the row means.
 pub const LEFT_OUT_HINT: &str = "Distance between this station's ball and the ball found without it";
 /// Row of the inspector for a reduced point.
-pub const BALL_IN_SENSOR: &str = "ball in sensor";
+pub const BALL_IN_SENSOR: &str = "ball";
 /// What the side's ratio means.
 pub const SIDE_HINT: &str =
     "The side of the laser plane on which the ball's centre lies; the other side costs that many times as much";
