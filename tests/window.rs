@@ -177,7 +177,10 @@ fn another_session_is_not_opened_over_unsaved_changes_unasked() {
     let other = open_sample(sample_lesson("lin-mu-2019-table-1.json").0);
     harness.state_mut().shell_mut().request(Command::OpenSample(0));
     settle(&mut harness);
-    assert!(workbench(&harness).document().is_some_and(handeye::app::Document::is_unsaved), "the edited session is there");
+    assert!(
+        workbench(&harness).document().is_some_and(handeye::app::Document::is_unsaved),
+        "the edited session is there"
+    );
     click(&mut harness, shell_words::CANCEL);
     assert!(!is_enabled(&harness, 1), "cancelling changes nothing");
     harness.get_by_label(&other).click();

@@ -28,8 +28,6 @@ pub enum Action {
     Redo,
     /// Shows or hides the help window.
     Help,
-    /// Shows or hides the inspector.
-    Inspector,
     /// Goes to a step of the rail.
     GoTo(Step),
 }
@@ -51,7 +49,7 @@ impl Action {
             Self::Undo => (Modifiers::COMMAND, Key::Z),
             Self::Redo => (CTRL_SHIFT, Key::Z),
             Self::Help => (Modifiers::NONE, Key::F1),
-            Self::OpenSample(_) | Self::Inspector | Self::GoTo(_) => return None,
+            Self::OpenSample(_) | Self::GoTo(_) => return None,
         };
         Some(KeyboardShortcut::new(modifiers, key))
     }
@@ -74,7 +72,6 @@ impl Action {
                 .and_then(|history| history.redo_label())
                 .map_or_else(|| words::REDO.to_owned(), words::redo_label),
             Self::Help => words::SHORTCUTS_AND_ABOUT.to_owned(),
-            Self::Inspector => words::INSPECTOR.to_owned(),
             Self::GoTo(step) => step.name().to_owned(),
         }
     }
@@ -91,7 +88,7 @@ impl Action {
             Self::Redo => document
                 .is_none_or(|document| document.history.redo_label().is_none())
                 .then_some(words::NOTHING_TO_REDO),
-            Self::Open | Self::OpenSample(_) | Self::Quit | Self::Help | Self::Inspector | Self::GoTo(_) => None,
+            Self::Open | Self::OpenSample(_) | Self::Quit | Self::Help | Self::GoTo(_) => None,
         }
     }
 }

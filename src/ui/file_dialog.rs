@@ -48,6 +48,7 @@ impl FileDialog {
         if !is_available() {
             // Room for one answer, and the receiver is at hand.
             sender.send(Answer::Unavailable(purpose)).ok();
+            wake();
             return;
         }
         // If no thread is to be had, the sender is dropped, which `poll` reads as no dialog.

@@ -43,12 +43,6 @@ impl Step {
         }
     }
 
-    /// The step with this name, in any case.
-    #[must_use]
-    pub fn by_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|step| step.name().eq_ignore_ascii_case(name))
-    }
-
     const fn hint(self) -> &'static str {
         match self {
             Self::Session => words::STEP_SESSION_HINT,

@@ -26,24 +26,6 @@ pub const BODY_SIZE: f32 = 13.0;
 /// Size of headings, points.
 pub const HEADING_SIZE: f32 = 18.0;
 
-/// Colours of the light theme's accent, for code without a `Ui`; panels take them from [`palette`].
-pub const ACCENT: Color32 = LIGHT.accent;
-/// The light theme's cards.
-pub const SURFACE: Color32 = LIGHT.surface;
-/// The light theme's ground behind the cards.
-pub const CANVAS: Color32 = LIGHT.canvas;
-/// The light theme's hairlines.
-pub const HAIRLINE: Color32 = LIGHT.hairline;
-/// The light theme's text.
-pub const TEXT: Color32 = LIGHT.text;
-/// The light theme's units and labels.
-pub const TEXT_DIM: Color32 = LIGHT.text_dim;
-/// The light theme's good.
-pub const GOOD: Color32 = LIGHT.good;
-/// The light theme's warning.
-pub const WARN: Color32 = LIGHT.warn;
-/// The light theme's bad.
-pub const BAD: Color32 = LIGHT.bad;
 /// Points on the arc: drawn solid.
 pub const INLIER: Color32 = Color32::from_rgb(0x00, 0x72, 0xb2);
 /// Points off the arc: drawn hollow.
@@ -133,9 +115,12 @@ pub const fn method_color(method: Method) -> Color32 {
     }
 }
 
-/// A darker shade of the method's colour, with enough contrast for text on a light ground.
+/// A shade of the method's colour with enough contrast for text: darker on a light ground, lighter on a dark one.
 #[must_use]
-pub const fn method_text_color(method: Method) -> Color32 {
+pub fn method_text_color(ui: &egui::Ui, method: Method) -> Color32 {
+    if ui.visuals().dark_mode {
+        return method_color(method).lerp_to_gamma(Color32::WHITE, 0.4);
+    }
     match method {
         Method::BallFixedPoint => method_color(method),
         Method::BallMaxArcStep => Color32::from_rgb(0x66, 0x66, 0x66),
@@ -166,13 +151,7 @@ pub const fn method_symbol(method: Method) -> &'static str {
     }
 }
 
-/// The colour of a verdict on a light ground; the shape from [`crate::text::verdict_mark`] stands beside it.
-#[must_use]
-pub const fn verdict_color(verdict: Verdict) -> Color32 {
-    verdict_color_in(&LIGHT, verdict)
-}
-
-/// The colour of a verdict in a palette.
+/// The colour of a verdict in a palette; the shape from [`crate::text::verdict_mark`] stands beside it.
 #[must_use]
 pub const fn verdict_color_in(palette: &Palette, verdict: Verdict) -> Color32 {
     match verdict {

@@ -169,3 +169,20 @@ fn has_display() -> bool {
             .into_iter()
             .any(|name| std::env::var_os(name).is_some_and(|value| !value.is_empty()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_reason_is_one_line_that_says_what_works_instead() {
+        for error in
+            [WindowError::NoDisplay, WindowError::DeadDisplay, WindowError::MissingLibraries, WindowError::NoOpenGl]
+        {
+            let line = error.to_string();
+            assert!(!line.contains('\n'), "{line}");
+            assert!(line.contains("handeye solve FILE"), "{line}");
+            assert!(!line.contains("winit"), "{line}");
+        }
+    }
+}

@@ -18,9 +18,9 @@ use super::{findings, model};
 pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let Some(document) = context.workbench.document() else { return };
     let results = context.workbench.results();
-    // Room for the scroll bar beside the figures, not over them.
-    ui.spacing_mut().scroll.floating_allocated_width = 8.0;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        // Room for the scroll bar beside the figures, not over them.
+        ui.set_max_width(ui.available_width() - SCROLL_BAR_WIDTH);
         ui.spacing_mut().item_spacing.y = 0.0;
         ui.add_space(16.0);
         let method = context.selection.method;
@@ -126,10 +126,11 @@ fn method_header(ui: &mut Ui, context: &mut PanelContext<'_>, document: &Documen
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let current = context.selection.method;
             let combo = ComboBox::from_id_salt("method shown")
-                .selected_text(method_text(current))
+                .selected_text(method_text(ui, current))
                 .show_ui(ui, |ui| {
                     for method in Method::ALL {
-                        ui.selectable_value(&mut context.selection.method, method, method_text(method));
+                        let text = method_text(ui, method);
+                        ui.selectable_value(&mut context.selection.method, method, text);
                     }
                 })
                 .response;
@@ -138,9 +139,9 @@ fn method_header(ui: &mut Ui, context: &mut PanelContext<'_>, document: &Documen
     });
 }
 
-fn method_text(method: Method) -> RichText {
+fn method_text(ui: &Ui, method: Method) -> RichText {
     RichText::new(format!("{} {}", theme::method_symbol(method), method_short_name(method)))
-        .color(theme::method_text_color(method))
+        .color(theme::method_text_color(ui, method))
 }
 
 fn solution_section(ui: &mut Ui, document: &Document, solution: &Solution) {
@@ -192,10 +193,12 @@ fn matrix(ui: &mut Ui, solution: &Solution) {
     }
 }
 
+/// Room at the right for the scroll bar, points.
+const SCROLL_BAR_WIDTH: f32 = 8.0;
 /// Decimals of a pose in mm and degrees, where no uncertainty says otherwise: what controllers report.
 const POSE_DECIMALS: usize = 3;
 /// Width of one of three figures in a row, points: room for seven digits, sign and point.
-const FIGURE_WIDTH: f32 = 64.0;
+const FIGURE_WIDTH: f32 = 68.0;
 /// Width of a row's unit, points.
 const UNIT_WIDTH: f32 = 28.0;
 

@@ -148,3 +148,44 @@ fn station_warnings(results: &Results, method: Method) -> impl Iterator<Item = &
         .flat_map(|solution| &solution.warnings)
         .filter(|warning| !matches!(warning, Warning::CaptureRefused { .. }))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::{parse, samples};
+
+    fn sample(file_name: &str) -> Session {
+        let sample = samples::ALL.iter().find(|sample| sample.file_name == file_name).expect("there is this sample");
+        parse(sample.json.as_bytes(), file_name).expect("the sample is a session")
+    }
+
+    #[test]
+    fn an_unfolded_station_shows_its_captures_below_it() {
+        let session = sample("few-rotations.json");
+        assert_eq!(rows(&session, &BTreeSet::new()).len(), session.stations.len());
+        let unfolded = rows(&session, &BTreeSet::from([1]));
+        let num_captures = session.stations[1].captures.len();
+        assert_eq!(unfolded.len(), session.stations.len() + num_captures);
+        assert_eq!(unfolded[1..3], [Row::Station(1), Row::Capture { station_idx: 1, capture_idx: 0 }]);
+        assert_eq!(unfolded[2 + num_captures], Row::Station(2));
+    }
+
+    #[test]
+    fn poses_are_written_as_the_controller_writes_them() {
+        let session = sample("few-rotations.json");
+        let [x, y, z, w, p, r] = pose_figures(&session, 2, 1).expect("there is this capture");
+        let pose = &session.stations[2].captures[1].base_from_flange;
+        assert!((crate::geometry::Vec3::new(x, y, z) - pose.translation_mm()).norm() < 1e-9);
+        let rotation = session.robot.pose_convention.rotation_from_angles_deg([w, p, r]);
+        assert!(rotation.angle_to(&pose.rotation()) < 1e-9);
+    }
+
+    #[test]
+    fn a_pose_measured_twice_is_told_of_its_station() {
+        let mut session = sample("few-rotations.json");
+        let twin = session.stations[0].captures.clone();
+        session.stations[3].captures = twin;
+        let checks = checks(&session);
+        assert!(checks.values().flatten().any(|message| message.contains("same pose")), "{checks:?}");
+    }
+}

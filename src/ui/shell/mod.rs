@@ -14,7 +14,7 @@ use crate::text::shell as words;
 use super::actions::{self, Action};
 use super::arcs::ArcsState;
 use super::compare::CompareState;
-use super::dialogs::{self, SavePath};
+use super::dialogs::SavePath;
 use super::file_dialog::{FileDialog, Purpose};
 use super::persisted::Persisted;
 use super::poses::panel::PosesState;
@@ -29,7 +29,7 @@ const BOTTOM_HEIGHT: f32 = 40.0;
 /// Width of the rail, points.
 const RAIL_WIDTH: f32 = 148.0;
 /// Width of the inspector, points.
-const INSPECTOR_WIDTH: f32 = 308.0;
+const INSPECTOR_WIDTH: f32 = 320.0;
 
 /// Something that waits for the answer about unsaved changes.
 #[derive(Clone, Debug, PartialEq)]
@@ -234,7 +234,6 @@ impl Shell {
             Action::Undo => commands.push(Command::Undo),
             Action::Redo => commands.push(Command::Redo),
             Action::Help => self.is_help_open = !self.is_help_open,
-            Action::Inspector => self.persisted.inspector_open = !self.persisted.inspector_open,
             Action::GoTo(step) => self.step = step,
         }
     }

@@ -51,7 +51,7 @@ fn contents<R>(ui: &mut Ui, title: &str, right: impl FnOnce(&mut Ui), body: impl
 }
 
 /// A card's header row: title, what stands at the right, and a hairline below.
-pub fn heading_row(ui: &mut Ui, title: RichText, right: impl FnOnce(&mut Ui)) {
+fn heading_row(ui: &mut Ui, title: RichText, right: impl FnOnce(&mut Ui)) {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), HEADER_HEIGHT), Sense::hover());
     let inner = rect.shrink2(vec2(theme::GAP, 0.0));
     let mut row = ui.new_child(UiBuilder::new().max_rect(inner).layout(Layout::left_to_right(Align::Center)));

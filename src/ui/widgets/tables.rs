@@ -59,11 +59,3 @@ pub fn faded_number_cell(row: &mut TableRow<'_, '_>, text: impl Into<String>) {
         });
     });
 }
-
-/// A cell with text at the left.
-pub fn text_cell(row: &mut TableRow<'_, '_>, text: &str) {
-    row.col(|ui| {
-        ui.add_space(4.0);
-        ui.label(text);
-    });
-}
