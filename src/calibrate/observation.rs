@@ -62,21 +62,30 @@ impl State {
         self.flange_from_sensor.rotation.inverse() * (ball_in_flange - self.flange_from_sensor.translation.vector)
     }
 
-    /// The ball's centre in the sensor frame at a pose, and its derivative.
+    /// The ball's centre in the sensor frame at a pose, and the rotation from base to sensor.
     ///
-    /// With `s = X⁻¹ T⁻¹ b` and `X ← X exp(ω, v)`: ds = s × ω − v + (T X)ᵀ db, rotations only in the last term.
+    /// With `s = X⁻¹ T⁻¹ b` and `X ← X exp(ω, v)`: ds = s × ω − v + C db, C this rotation.
     #[must_use]
-    pub fn ball_in_sensor_with_jacobian(&self, base_from_flange: &Rigid) -> (Vec3, CentreJacobian) {
-        let base_from_sensor =
-            (base_from_flange.rotation * self.flange_from_sensor.rotation).to_rotation_matrix();
-        let centre = self.ball_in_sensor(base_from_flange);
+    pub fn ball_in_sensor_and_rotation(&self, base_from_flange: &Rigid) -> (Vec3, Mat3) {
+        let sensor_from_base = (base_from_flange.rotation * self.flange_from_sensor.rotation)
+            .to_rotation_matrix()
+            .into_inner()
+            .transpose();
+        // R_Xᵀ (Tᵀ (b − t) − t_X), with both rotations in one.
+        let shift = self.flange_from_sensor.rotation.inverse() * self.flange_from_sensor.translation.vector;
+        let centre = sensor_from_base * (self.ball_in_base - base_from_flange.translation.vector) - shift;
+        (centre, sensor_from_base)
+    }
+
+    /// Derivative of the ball's centre in the sensor frame by the nine unknowns.
+    #[must_use]
+    pub fn centre_jacobian(&self, base_from_flange: &Rigid) -> CentreJacobian {
+        let (centre, sensor_from_base) = self.ball_in_sensor_and_rotation(base_from_flange);
         let mut jacobian = CentreJacobian::zeros();
         jacobian.fixed_view_mut::<3, 3>(0, 0).copy_from(&hat(centre));
         jacobian.fixed_view_mut::<3, 3>(0, 3).copy_from(&-Mat3::identity());
+        jacobian.fixed_view_mut::<3, 3>(0, 6).copy_from(&sensor_from_base);
         jacobian
-            .fixed_view_mut::<3, 3>(0, 6)
-            .copy_from(&base_from_sensor.matrix().transpose());
-        (centre, jacobian)
     }
 
     /// The state after a step in the tangent.
@@ -110,7 +119,7 @@ mod tests {
                 Translation3::new(580.0, -60.0, 220.0),
                 UnitQuaternion::from_euler_angles(3.1, 0.2, 0.7),
             );
-            let (_, jacobian) = state.ball_in_sensor_with_jacobian(&base_from_flange);
+            let jacobian = state.centre_jacobian(&base_from_flange);
             for column in 0..NUM_UNKNOWNS {
                 let mut step = SMatrix::<f64, NUM_UNKNOWNS, 1>::zeros();
                 step[column] = 1e-5;

@@ -2,12 +2,16 @@
 
 use nalgebra::{Matrix6, SMatrix, SVector};
 
+use crate::geometry::so3::hat;
+use crate::geometry::{Mat3, Vec3};
+
 use super::SolveError;
 use super::observation::{CentreObservation, NUM_UNKNOWNS, State};
 
 /// The 9 × 9 matrix of the normal equations.
 pub type Hessian = SMatrix<f64, NUM_UNKNOWNS, NUM_UNKNOWNS>;
-type Gradient = SVector<f64, NUM_UNKNOWNS>;
+/// A vector of the nine unknowns.
+pub type Gradient = SVector<f64, NUM_UNKNOWNS>;
 
 /// Gauss–Newton settles in four to six steps; more means a bad start.
 const MAX_ITERATIONS: usize = 60;
@@ -39,29 +43,41 @@ pub fn minimise<'a, I>(observations: I, start: State) -> Result<Minimum, SolveEr
 where
     I: Iterator<Item = &'a CentreObservation> + Clone,
 {
+    let normal = Normal::of(observations.clone(), &start);
+    minimise_from(observations, start, normal, SETTLED)
+}
+
+/// The same with the sums at the start known already, ending at a step below `settled` (rad, mm/100).
+///
+/// # Errors
+/// As [`minimise`].
+pub fn minimise_from<'a, I>(observations: I, start: State, normal: Normal, settled: f64) -> Result<Minimum, SolveError>
+where
+    I: Iterator<Item = &'a CentreObservation> + Clone,
+{
     let mut state = start;
-    let (mut hessian, mut gradient, mut cost) = normal_equations(observations.clone(), &state);
+    let mut normal = normal;
     let mut damping = 0.0;
     for iteration in 1..=MAX_ITERATIONS {
-        let step = solve_scaled(&hessian, &gradient, damping)?;
+        let step = solve_scaled(&normal.hessian, &normal.gradient, damping)?;
         let trial = state.stepped(&step);
         let size = step_size(&step);
         if !size.is_finite() {
             return Err(SolveError::Diverged);
         }
-        if size <= SETTLED {
+        if size <= settled {
             return Ok(Minimum {
                 state: trial,
-                hessian,
+                hessian: normal.hessian,
                 num_iterations: iteration,
                 converged: true,
             });
         }
-        let (trial_hessian, trial_gradient, trial_cost) = normal_equations(observations.clone(), &trial);
+        let trial_normal = Normal::of(observations.clone(), &trial);
         // Costs are differences from the linearisation points; near the minimum they are equal to rounding.
-        let rounding = 1e-12 * cost.abs().max(trial_cost.abs());
-        if trial_cost <= cost + rounding || size < 1e-9 {
-            (state, hessian, gradient, cost) = (trial, trial_hessian, trial_gradient, trial_cost);
+        let rounding = 1e-12 * normal.cost.abs().max(trial_normal.cost.abs());
+        if trial_normal.cost <= normal.cost + rounding || size < 1e-9 {
+            (state, normal) = (trial, trial_normal);
             damping *= 0.1;
             if damping < 1e-9 {
                 damping = 0.0;
@@ -72,7 +88,7 @@ where
     }
     Ok(Minimum {
         state,
-        hessian,
+        hessian: normal.hessian,
         num_iterations: MAX_ITERATIONS,
         converged: false,
     })
@@ -85,23 +101,74 @@ fn step_size(step: &Gradient) -> f64 {
     rotation + (sensor_mm + ball_mm) / LEVER_MM
 }
 
-fn normal_equations<'a>(
-    observations: impl Iterator<Item = &'a CentreObservation>,
-    state: &State,
-) -> (Hessian, Gradient, f64) {
-    let mut hessian = Hessian::zeros();
-    let mut gradient = Gradient::zeros();
-    let mut cost = 0.0;
-    for observation in observations {
-        let (centre, jacobian) = state.ball_in_sensor_with_jacobian(&observation.base_from_flange);
-        let offset = centre - observation.centre_in_sensor;
-        let weighted_offset = observation.information * offset;
-        let weighted_jacobian = observation.information * jacobian;
-        hessian += jacobian.transpose() * weighted_jacobian;
-        gradient += jacobian.transpose() * (observation.pull - weighted_offset);
-        cost += offset.dot(&weighted_offset) - 2.0 * observation.pull.dot(&offset);
+/// The sums that a step is computed from.
+#[derive(Clone, Copy, Debug)]
+pub struct Normal {
+    /// Σ JᵀWJ.
+    pub hessian: Hessian,
+    /// Half the negative gradient.
+    pub gradient: Gradient,
+    /// Cost, relative to that at the linearisation points.
+    pub cost: f64,
+}
+
+impl Normal {
+    /// Nothing observed.
+    #[must_use]
+    pub fn zero() -> Self {
+        Self { hessian: Hessian::zeros(), gradient: Gradient::zeros(), cost: 0.0 }
     }
-    (hessian, gradient, cost)
+
+    /// Of some observations at a state.
+    ///
+    /// The Jacobian is `([s]×, −I, C)`, so the blocks are products of three small matrices; a general 3 × 9 product takes
+    /// twice as long.
+    #[must_use]
+    pub fn of<'a>(observations: impl Iterator<Item = &'a CentreObservation>, state: &State) -> Self {
+        let (mut rotation_rotation, mut rotation_shift, mut rotation_ball) = (Mat3::zeros(), Mat3::zeros(), Mat3::zeros());
+        let (mut shift_shift, mut shift_ball, mut ball_ball) = (Mat3::zeros(), Mat3::zeros(), Mat3::zeros());
+        let (mut by_rotation, mut by_shift, mut by_ball) = (Vec3::zeros(), Vec3::zeros(), Vec3::zeros());
+        let mut cost = 0.0;
+        for observation in observations {
+            let (centre, sensor_from_base) = state.ball_in_sensor_and_rotation(&observation.base_from_flange);
+            let offset = centre - observation.centre_in_sensor;
+            let weighted_offset = observation.information * offset;
+            let pull = observation.pull - weighted_offset;
+            cost += offset.dot(&weighted_offset) - 2.0 * observation.pull.dot(&offset);
+            // [s]ᵀ W and Cᵀ W once, the blocks from them.
+            let turned = hat(centre).transpose() * observation.information;
+            let in_base = sensor_from_base.transpose() * observation.information;
+            rotation_rotation += turned * hat(centre);
+            rotation_shift -= turned;
+            rotation_ball += turned * sensor_from_base;
+            shift_shift += observation.information;
+            shift_ball -= in_base.transpose();
+            ball_ball += in_base * sensor_from_base;
+            by_rotation += pull.cross(&centre);
+            by_shift -= pull;
+            by_ball += sensor_from_base.transpose() * pull;
+        }
+        let mut hessian = Hessian::zeros();
+        let blocks = [
+            (0, 0, rotation_rotation),
+            (0, 3, rotation_shift),
+            (3, 0, rotation_shift.transpose()),
+            (0, 6, rotation_ball),
+            (6, 0, rotation_ball.transpose()),
+            (3, 3, shift_shift),
+            (3, 6, shift_ball),
+            (6, 3, shift_ball.transpose()),
+            (6, 6, ball_ball),
+        ];
+        for (row, column, block) in blocks {
+            hessian.fixed_view_mut::<3, 3>(row, column).copy_from(&block);
+        }
+        let mut gradient = Gradient::zeros();
+        for (row, part) in [(0, by_rotation), (3, by_shift), (6, by_ball)] {
+            gradient.fixed_rows_mut::<3>(row).copy_from(&part);
+        }
+        Self { hessian, gradient, cost }
+    }
 }
 
 /// Solves `(H + damping diag H) step = gradient` with the diagonal scaled to one, so that mm and rad compare.

@@ -4,7 +4,7 @@ use crate::geometry::stats::robust_std_about_zero;
 use crate::geometry::{Mat3, Profile};
 
 use super::ransac::{CircleSearch, find_circle};
-use super::{ArcRefusal, Circle, CircleFit, algebraic, robust};
+use super::{ArcRefusal, Circle, CircleFit, FitError, algebraic, robust};
 
 /// What is known before looking at a profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,8 +73,11 @@ const RADIUS_EXCESS: f64 = 0.05;
 const MIN_RADIUS_PART: f64 = 0.15;
 /// The search takes points within this part of the radius, or four standard deviations of the noise, whichever is more.
 const SEARCH_TOLERANCE_PART: f64 = 0.002;
-/// Beyond this part of the radius beside the centre the light grazes the ball (70°) and the range is biased.
-const FLANK_PART: f64 = 0.94;
+/// How far beside the centre points are used, as parts of the radius: up to an incidence of 70°, where the light grazes the
+/// ball, and, where the flanks prove to be biased, of 60°, 50° or 40°.
+const FLANK_PARTS: [f64; 4] = [0.94, 0.87, 0.77, 0.64];
+/// Fits with and without the outer flanks that differ by more than this many standard deviations tell of a bias.
+const BIASED_AT_STDS: f64 = 3.0;
 /// If this part of the points agrees with a fit to all of them, nothing but the ball is in view.
 const ONLY_BALL_PART: f64 = 0.9;
 
@@ -110,15 +113,51 @@ pub fn extract_arc(profile: &Profile, options: &ArcOptions) -> Result<ArcFit, Ar
     };
     let (near_x, near_z) = near(&x_mm, &z_mm, start, 3.0 * tolerance_mm);
     let (coarse, _) = robust::fit_from(&near_x, &near_z, start)?;
-    let (front_x, front_z) = without_flanks(&near_x, &near_z, coarse.circle);
-    if front_x.len() < MIN_POINTS {
-        return Err(ArcRefusal::NoArc {
-            limit_mm,
-            num_points: x_mm.len(),
-        });
-    }
-    let (fit, kept) = robust::fit_from(&front_x, &front_z, coarse.circle)?;
+    let (fit, kept) = fit_without_biased_flanks(&near_x, &near_z, coarse.circle).ok_or(ArcRefusal::NoArc {
+        limit_mm,
+        num_points: x_mm.len(),
+    })??;
     finish(profile, options, limit_mm, &fit, kept)
+}
+
+/// The fit to the widest part of the arc whose flanks agree with its middle; `None` if hardly a point is left.
+///
+/// The wider fit is the better one unless the flanks are biased; the narrower one is worse but unbiased. Without bias their
+/// difference has the variance of the one minus that of the other (Hausman 1978), so a larger one tells.
+fn fit_without_biased_flanks(
+    x_mm: &[f64],
+    z_mm: &[f64],
+    start: Circle,
+) -> Option<Result<(CircleFit, robust::Kept), FitError>> {
+    let fit_within = |part: f64| {
+        let (front_x, front_z) = within_flanks(x_mm, z_mm, start, part);
+        (front_x.len() >= MIN_POINTS).then(|| (front_x.len(), robust::fit_from(&front_x, &front_z, start)))
+    };
+    let (mut num_points, widest) = fit_within(FLANK_PARTS[0])?;
+    let mut wide = match widest {
+        Ok(wide) => wide,
+        Err(error) => return Some(Err(error)),
+    };
+    for part in &FLANK_PARTS[1..] {
+        let Some((num_narrow, Ok(narrow))) = fit_within(*part) else { break };
+        if num_narrow == num_points || agree(&wide.0, &narrow.0) {
+            break;
+        }
+        (num_points, wide) = (num_narrow, narrow);
+    }
+    Some(Ok(wide))
+}
+
+/// Whether the radii and the centres along the range differ no more than noise lets them.
+fn agree(wide: &CircleFit, narrow: &CircleFit) -> bool {
+    let within = |difference: f64, idx: usize| {
+        let variance = narrow.covariance[(idx, idx)];
+        let expected = (variance - wide.covariance[(idx, idx)]).max(0.1 * variance).sqrt();
+        // Neighbouring points of a real sensor err together, so their fits scatter more than their covariance says: a
+        // difference below twice the noise of a point is no reason to give points up.
+        difference.abs() <= (BIASED_AT_STDS * expected).max(2.0 * wide.rms_mm)
+    };
+    within(wide.circle.radius_mm - narrow.circle.radius_mm, 2) && within(wide.circle.z_mm - narrow.circle.z_mm, 1)
 }
 
 /// The circle of a profile that shows the ball and nothing else, found without a search.
@@ -188,11 +227,8 @@ fn near(x_mm: &[f64], z_mm: &[f64], circle: Circle, distance_mm: f64) -> (Vec<f6
         .unzip()
 }
 
-fn without_flanks(x_mm: &[f64], z_mm: &[f64], circle: Circle) -> (Vec<f64>, Vec<f64>) {
-    x_mm.iter()
-        .zip(z_mm)
-        .filter(|(x, _)| (**x - circle.x_mm).abs() <= FLANK_PART * circle.radius_mm)
-        .unzip()
+fn within_flanks(x_mm: &[f64], z_mm: &[f64], circle: Circle, part: f64) -> (Vec<f64>, Vec<f64>) {
+    x_mm.iter().zip(z_mm).filter(|(x, _)| (**x - circle.x_mm).abs() <= part * circle.radius_mm).unzip()
 }
 
 fn finish(

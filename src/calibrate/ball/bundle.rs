@@ -93,19 +93,24 @@ fn stations_with_profiles<'a>(
 
 /// The whole curves where there are sweeps, one section a station otherwise; doubts about the sides carry over.
 fn start(problem: &BallProblem, warnings: &mut Vec<Warning>) -> Result<State, SolveError> {
-    let solution = match max_arc::solve(problem) {
-        Ok(solution) => solution,
-        Err(_) => {
-            let solution = fixed_point::solve(problem)?;
-            let doubts = |warning: &&Warning| matches!(warning, Warning::SideAmbiguous { .. } | Warning::BlindInY { .. });
-            warnings.extend(solution.warnings.iter().filter(doubts).cloned());
-            solution
-        }
-    };
-    Ok(State {
-        flange_from_sensor: *solution.flange_from_sensor.rigid(),
-        ball_in_base: solution.ball_in_base_mm,
-    })
+    if let Ok(state) = max_arc::state(problem) {
+        return Ok(state);
+    }
+    let found = fixed_point::find(problem)?;
+    let doubts = |warning: &&Warning| matches!(warning, Warning::SideAmbiguous { .. } | Warning::BlindInY { .. });
+    warnings.extend(found.warnings.iter().filter(doubts).cloned());
+    Ok(found.minimum.state)
+}
+
+/// The unknowns that minimise over all points, from a start of one's own; without validation.
+///
+/// # Errors
+/// [`SolveError`] with fewer than four stations with a profile, or if they leave a direction free.
+pub fn refine(problem: &BallProblem, start: State) -> Result<State, SolveError> {
+    let stations = stations_with_profiles(problem, &mut Vec::new())?;
+    let profiles = used_profiles(&stations, problem.radius_mm);
+    let settled = settle(|state| linearised(&profiles, state, problem.radius_mm), &problem.noise, start)?;
+    Ok(settled.minimum.state)
 }
 
 fn used_profiles<'a>(stations: &[&'a Station], ball_radius_mm: f64) -> Vec<UsedProfile<'a>> {

@@ -4,7 +4,7 @@
 //! Lin & Mu 2019, section 1, eq. 1–2 (their baseline, after Wang & Dai 2015). The paper counts seven unknowns; with the
 //! ball's centre there are nine, so four stations are the bare minimum, and rotations about one axis never suffice.
 
-use crate::calibrate::observation::CentreObservation;
+use crate::calibrate::observation::{CentreObservation, State};
 use crate::calibrate::rotation_start::PoseGeometry;
 use crate::calibrate::solver::minimise;
 use crate::calibrate::{BallProblem, Method, Reading, Side, SideChoice, Solution, SolveError, Station, Warning};
@@ -33,6 +33,16 @@ struct Section<'a> {
 /// # Errors
 /// [`SolveError`] with fewer than four usable stations, or if they leave a direction free.
 pub fn solve(problem: &BallProblem) -> Result<Solution, SolveError> {
+    find(problem)?.into_solution()
+}
+
+/// The minimum alone, for other methods to start from.
+pub(super) fn state(problem: &BallProblem) -> Result<State, SolveError> {
+    Ok(find(problem)?.minimum.state)
+}
+
+/// The minimum with all that is known about it.
+pub(super) fn find(problem: &BallProblem) -> Result<Found<'_>, SolveError> {
     let mut warnings = Vec::new();
     let sections: Vec<Section<'_>> =
         problem.stations.iter().filter_map(|station| section(problem, station, &mut warnings)).collect();
@@ -72,7 +82,7 @@ pub fn solve(problem: &BallProblem) -> Result<Solution, SolveError> {
             sweep: None,
         })
         .collect();
-    Found {
+    Ok(Found {
         method: Method::BallFixedPoint,
         problem,
         stations,
@@ -82,8 +92,7 @@ pub fn solve(problem: &BallProblem) -> Result<Solution, SolveError> {
         prior_information: 0.0,
         poses,
         warnings,
-    }
-    .into_solution()
+    })
 }
 
 /// The first capture of a station as candidates for the ball's centre; reduced points are taken as they are.
@@ -177,7 +186,7 @@ fn add_blind_warning(sections: &[Section<'_>], warnings: &mut Vec<Warning>) {
 /// Mean square residual a degree of freedom, for unit-weight points, mm²; `None` if nothing is left over.
 pub(super) fn mean_square_residual(
     observations: &[CentreObservation],
-    state: &crate::calibrate::observation::State,
+    state: &State,
 ) -> Option<f64> {
     let cost: f64 = observations
         .iter()

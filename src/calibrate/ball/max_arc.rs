@@ -13,7 +13,7 @@ use crate::geometry::{Rigid, stats};
 
 use super::assemble::{Found, StationFacts};
 use super::curve::{evaluated_sweep, fit_curve, section_observation, section_residual};
-use super::max_arc_step;
+use super::{fixed_point, max_arc_step};
 use super::passes::{Settled, settle};
 use super::pose_noise::station_variance_factor;
 use super::sweep::{StationSweep, step_warning, sweeps, travel_direction};
@@ -26,6 +26,16 @@ const OFF_NORMAL_DEG: f64 = 1.0;
 /// # Errors
 /// [`SolveError`] with fewer than four usable sweeps, or if they leave a direction free.
 pub fn solve(problem: &BallProblem) -> Result<Solution, SolveError> {
+    find(problem)?.into_solution()
+}
+
+/// The minimum alone, for other methods to start from.
+pub(super) fn state(problem: &BallProblem) -> Result<State, SolveError> {
+    let sweeps = sweeps(problem, &mut Vec::new())?;
+    Ok(settle_from_best_start(problem, &sweeps)?.minimum.state)
+}
+
+fn find(problem: &BallProblem) -> Result<Found<'_>, SolveError> {
     let mut warnings = Vec::new();
     let sweeps = sweeps(problem, &mut warnings)?;
     let direction = travel_direction(&sweeps);
@@ -48,7 +58,7 @@ pub fn solve(problem: &BallProblem) -> Result<Solution, SolveError> {
         .collect::<Result<Vec<_>, SolveError>>()?;
     add_sweep_warnings(&stations, &mut warnings);
     let variance_factor = station_variance_factor(&found.observations, &found.minimum.state, sweeps.len());
-    Found {
+    Ok(Found {
         method: Method::BallMaxArc,
         problem,
         stations,
@@ -59,8 +69,7 @@ pub fn solve(problem: &BallProblem) -> Result<Solution, SolveError> {
         prior_information: 1.0 / (problem.radius_mm * problem.radius_mm),
         poses,
         warnings,
-    }
-    .into_solution()
+    })
 }
 
 /// A published stop that went astray must not spoil the better method: the fixed-point answer is tried as well.
@@ -69,12 +78,9 @@ fn settle_from_best_start(problem: &BallProblem, sweeps: &[StationSweep<'_>]) ->
     const FITS_PART: f64 = 0.01;
     let mut best: Option<(f64, Settled)> = None;
     let mut failure = SolveError::Diverged;
-    for method in [max_arc_step::solve, super::fixed_point::solve] {
-        let Ok(solution) = method(problem) else { continue };
-        let start = State {
-            flange_from_sensor: *solution.flange_from_sensor.rigid(),
-            ball_in_base: solution.ball_in_base_mm,
-        };
+    let starts: [fn(&BallProblem) -> Result<State, SolveError>; 2] = [max_arc_step::state, fixed_point::state];
+    for start in starts {
+        let Ok(start) = start(problem) else { continue };
         match settle(|state| linearised(problem, sweeps, state), &problem.noise, start) {
             Ok(settled) => {
                 let residual_mm = rms_section_residual(problem, sweeps, &settled.minimum.state);

@@ -4,7 +4,7 @@
 //! Lin & Mu 2019, section 2, fig. 3 and eq. 3: the ball's centre in the frame of the first profile is (x1, n·d, z1), with
 //! x1 and z1 of the profile at which the search stopped.
 
-use crate::calibrate::observation::CentreObservation;
+use crate::calibrate::observation::{CentreObservation, State};
 use crate::calibrate::rotation_start::PoseGeometry;
 use crate::calibrate::solver::minimise;
 use crate::calibrate::{BallProblem, Method, Solution, SolveError};
@@ -33,6 +33,15 @@ pub(super) fn commanded_travel_mm(sweep: &StationSweep<'_>, step: usize, directi
 /// # Errors
 /// [`SolveError`] with fewer than four usable sweeps, or if they leave a direction free.
 pub fn solve(problem: &BallProblem) -> Result<Solution, SolveError> {
+    find(problem)?.into_solution()
+}
+
+/// The minimum alone, for other methods to start from.
+pub(super) fn state(problem: &BallProblem) -> Result<State, SolveError> {
+    Ok(find(problem)?.minimum.state)
+}
+
+fn find(problem: &BallProblem) -> Result<Found<'_>, SolveError> {
     let mut warnings = Vec::new();
     let sweeps = sweeps(problem, &mut warnings)?;
     let direction = travel_direction(&sweeps);
@@ -75,7 +84,7 @@ pub fn solve(problem: &BallProblem) -> Result<Solution, SolveError> {
             sweep: None,
         })
         .collect();
-    Found {
+    Ok(Found {
         method: Method::BallMaxArcStep,
         problem,
         stations,
@@ -85,6 +94,5 @@ pub fn solve(problem: &BallProblem) -> Result<Solution, SolveError> {
         prior_information: 0.0,
         poses,
         warnings,
-    }
-    .into_solution()
+    })
 }

@@ -44,9 +44,27 @@ impl PoseNoise {
             position_std_mm,
             orientation_std_rad: 0.0,
         };
+        // With S = τ² I every direction of a profile stands alone: eᵀ (W⁻¹ + S)⁻¹ e is Σ (vᵀ g)² / (λ + τ² λ²) over the
+        // eigenvectors v of W, with e = W⁻¹ g.
+        let directions: Vec<(f64, f64)> = observations
+            .iter()
+            .flat_map(|observation| {
+                let eigen = observation.information.symmetric_eigen();
+                let along = eigen.eigenvectors.transpose() * residual_pull(observation, state);
+                [0, 1, 2].map(|idx| (eigen.eigenvalues[idx], along[idx] * along[idx]))
+            })
+            .filter(|(eigenvalue, _)| *eigenvalue > 0.0)
+            .collect();
         #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 profiles")]
-        let freedom = (3 * observations.len()) as f64 - 9.0;
-        let excess = |std_mm: f64| chi_square(observations, state, &noise(std_mm)) - freedom;
+        let freedom = directions.len() as f64 - 9.0;
+        let excess = |std_mm: f64| {
+            let variance = std_mm * std_mm;
+            let chi_square: f64 = directions
+                .iter()
+                .map(|(eigenvalue, squared)| squared / (eigenvalue + variance * eigenvalue * eigenvalue))
+                .sum();
+            chi_square - freedom
+        };
         if freedom <= 0.0 || excess(LEAST_MM) <= 0.0 {
             return noise(0.0);
         }
@@ -95,22 +113,6 @@ pub(super) fn marginalised(
         pull: damp * observation.pull,
         ..observation.clone()
     })
-}
-
-/// Σ eᵀ (W⁻¹ + S)⁻¹ e over the profiles, e the offset of a profile's own optimum from the common ball: as many as
-/// degrees of freedom are expected.
-fn chi_square(observations: &[CentreObservation], state: &State, noise: &PoseNoise) -> f64 {
-    observations
-        .iter()
-        .filter_map(|observation| {
-            let pull = residual_pull(observation, state);
-            let w = observation.information;
-            // eᵀ (W⁻¹ + S)⁻¹ e with e = W⁻¹ g is gᵀ (W + W S W)⁻¹ g.
-            let matrix = w + w * noise.centre_covariance(observation, state) * w;
-            let ridge = Mat3::identity() * (1e-13 * matrix.trace());
-            (matrix + ridge).cholesky().map(|factor| pull.dot(&factor.solve(&pull)))
-        })
-        .sum()
 }
 
 /// Half the negative gradient of an observation at the state.
