@@ -6,7 +6,8 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use handeye::calibrate::observation::CentreObservation;
+use handeye::calibrate::ball::bundle::refine;
+use handeye::calibrate::observation::{CentreObservation, State};
 use handeye::calibrate::rotation_start::PoseGeometry;
 use handeye::calibrate::solver::minimise;
 use handeye::calibrate::{Method, solve, solve_all};
@@ -90,6 +91,15 @@ fn hand_eye(criterion: &mut Criterion) {
         let session = session(num_poses, 1, Dirt::default());
         let measured = measure(&session, None, &mut Unwatched).expect("not cancelled");
         let problem = ball_problem(&session, &measured).expect("a ball");
+        // From the fixed-point answer, as a user would start the other solvers.
+        let fixed_point = solve(&problem, Method::BallFixedPoint).expect("a solution");
+        let start = State {
+            flange_from_sensor: *fixed_point.flange_from_sensor.rigid(),
+            ball_in_base: fixed_point.ball_in_base_mm,
+        };
+        group.bench_function(format!("bundle, {num_poses} x 800 points"), |bencher| {
+            bencher.iter(|| refine(black_box(&problem), start));
+        });
         group.bench_function(format!("bundle, {num_poses} x 800 points, start and validation included"), |bencher| {
             bencher.iter(|| solve(black_box(&problem), Method::BallBundle));
         });

@@ -6,10 +6,8 @@
 //! N. Chernov, "Circular and linear regression", 2010, chapter 5, for the normalisations; the root is found by Newton's
 //! method from zero, which converges from below to the smallest one (theorem 5.4 there).
 
+use super::sums::sum_over;
 use super::{Circle, FitError};
-
-/// Points summed side by side; independent sums let the processor overlap them.
-const LANES: usize = 4;
 
 /// Second and mixed moments of the points about their mean, with w = x² + z².
 struct Moments {
@@ -90,30 +88,6 @@ fn moments(x_mm: &[f64], z_mm: &[f64]) -> Result<Moments, FitError> {
         zw,
         ww,
     })
-}
-
-/// Sums `N` terms over all points in independent lanes, in the same order every time.
-#[inline]
-pub(super) fn sum_over<const N: usize>(x_mm: &[f64], z_mm: &[f64], terms: impl Fn(f64, f64) -> [f64; N]) -> [f64; N] {
-    let mut lanes = [[0.0; LANES]; N];
-    let (x_chunks, x_rest) = x_mm.as_chunks::<LANES>();
-    let (z_chunks, z_rest) = z_mm.as_chunks::<LANES>();
-    for (x, z) in x_chunks.iter().zip(z_chunks) {
-        for lane in 0..LANES {
-            let values = terms(x[lane], z[lane]);
-            for term in 0..N {
-                lanes[term][lane] += values[term];
-            }
-        }
-    }
-    let mut sums = lanes.map(|lane| (lane[0] + lane[1]) + (lane[2] + lane[3]));
-    for (x, z) in x_rest.iter().zip(z_rest) {
-        let values = terms(*x, *z);
-        for term in 0..N {
-            sums[term] += values[term];
-        }
-    }
-    sums
 }
 
 #[derive(Clone, Copy, PartialEq)]

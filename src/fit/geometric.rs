@@ -2,7 +2,7 @@
 
 use crate::geometry::{Mat3, Vec3};
 
-use super::algebraic::sum_over;
+use super::sums::sum_over;
 use super::{Circle, CircleFit, FitError};
 
 /// Gauss–Newton gains a factor noise/radius a step, so it needs three or four; more means that it wanders.

@@ -10,6 +10,7 @@ pub mod error;
 pub mod geometric;
 pub mod ransac;
 pub mod robust;
+pub(crate) mod sums;
 
 pub use arc::{ArcFit, ArcOptions, PointClass, extract_arc};
 pub use circle::{Circle, CircleFit, CircleMethod};

@@ -2,10 +2,8 @@
 //! in the sensor frame.
 
 use crate::fit::ArcFit;
+use crate::fit::sums::sum_over;
 use crate::geometry::{Mat3, Vec3};
-
-/// Points summed side by side; independent sums let the processor overlap them.
-const LANES: usize = 4;
 
 /// Sums over the inliers of a profile for r = |p − s| − R.
 #[derive(Clone, Copy, Debug)]
@@ -18,24 +16,10 @@ pub(super) struct ProfileSums {
 
 /// One pass over the points of a profile for a ball centred at `centre` in the sensor frame.
 pub(super) fn profile_sums(arc: &ArcFit, centre: Vec3, ball_radius_mm: f64) -> ProfileSums {
-    let (x_chunks, x_rest) = arc.inlier_x_mm.as_chunks::<LANES>();
-    let (z_chunks, z_rest) = arc.inlier_z_mm.as_chunks::<LANES>();
     // Of u = (dx, −y, dz)/d the middle part is −y/d: its sums follow from those of 1/d.
-    let mut lanes = [[0.0; LANES]; 9];
-    for (x, z) in x_chunks.iter().zip(z_chunks) {
-        for lane in 0..LANES {
-            let values = terms(x[lane] - centre.x, z[lane] - centre.z, centre.y, ball_radius_mm);
-            for (sum, value) in lanes.iter_mut().zip(values) {
-                sum[lane] += value;
-            }
-        }
-    }
-    let mut sums = lanes.map(|lane| (lane[0] + lane[1]) + (lane[2] + lane[3]));
-    for (x, z) in x_rest.iter().zip(z_rest) {
-        for (sum, value) in sums.iter_mut().zip(terms(x - centre.x, z - centre.z, centre.y, ball_radius_mm)) {
-            *sum += value;
-        }
-    }
+    let sums = sum_over(&arc.inlier_x_mm, &arc.inlier_z_mm, |x, z| {
+        terms(x - centre.x, z - centre.z, centre.y, ball_radius_mm)
+    });
     let [uu, uw, ww, u_inverse, w_inverse, inverse_squared, ur, wr, inverse_r] = sums;
     let y = -centre.y;
     let (uv, vw, vv, vr) = (y * u_inverse, y * w_inverse, y * y * inverse_squared, y * inverse_r);

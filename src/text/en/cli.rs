@@ -4,8 +4,6 @@ use crate::calibrate::{Verdict, VerdictReason, Warning};
 
 use super::{verdict_name, warning_message};
 
-/// What the binary says without a display.
-pub const NO_WINDOW_HINT: &str = "`handeye solve FILE` and `handeye check FILE` work without one";
 
 /// The verdict with its reason, in one line.
 #[must_use]
