@@ -57,7 +57,9 @@ fn solved(session: &Session, method: Method) -> Option<Solution> {
 
 fn print_scene(scene: &Scene) {
     println!("\n### {} ({} seeds)\n", scene.name, scene.num_seeds);
-    println!("| method | error of a workspace point, RMS / mm | largest / mm | orientation, RMS / ° | error over stated σ |");
+    println!(
+        "| method | error of a workspace point, RMS / mm | largest / mm | orientation, RMS / ° | error over stated σ |"
+    );
     println!("| --- | --- | --- | --- | --- |");
     for method in Method::ALL {
         let (mut errors_mm, mut angles_deg, mut stated_mm) = (Vec::new(), Vec::new(), Vec::new());

@@ -95,11 +95,9 @@ fn stated_covariance_is_that_of_repeated_fits() {
         let (x, z) = arc(100.0, 150, 0.02, 31 * seed);
         let fit = geometric::fit(&x, &z, TRUTH).expect("a circle");
         let found = fit.circle;
-        for (errors, error) in errors.iter_mut().zip([
-            found.x_mm - TRUTH.x_mm,
-            found.z_mm - TRUTH.z_mm,
-            found.radius_mm - TRUTH.radius_mm,
-        ]) {
+        for (errors, error) in
+            errors.iter_mut().zip([found.x_mm - TRUTH.x_mm, found.z_mm - TRUTH.z_mm, found.radius_mm - TRUTH.radius_mm])
+        {
             errors.push(error);
         }
         for (idx, stated) in stated.iter_mut().enumerate() {
@@ -180,12 +178,10 @@ fn the_arc_is_found_in_a_dirty_profile_whichever_way_the_axes_run() {
 
 #[test]
 fn profiles_without_a_usable_arc_say_why() {
-    let refusal = |x: &[f64], z: &[f64], options: &ArcOptions| extract_arc(&profile(x, z), options).expect_err("no arc");
+    let refusal =
+        |x: &[f64], z: &[f64], options: &ArcOptions| extract_arc(&profile(x, z), options).expect_err("no arc");
     assert_eq!(refusal(&[], &[], &BALL), ArcRefusal::TooFewPoints { found: 0, needed: 8 });
-    assert_eq!(
-        refusal(&[0.0; 20], &[f64::NAN; 20], &BALL),
-        ArcRefusal::TooFewPoints { found: 0, needed: 8 }
-    );
+    assert_eq!(refusal(&[0.0; 20], &[f64::NAN; 20], &BALL), ArcRefusal::TooFewPoints { found: 0, needed: 8 });
     let x: Vec<f64> = (0..400).map(|idx| 0.1 * f64::from(idx)).collect();
     let mut normal = Normal(3);
     let table: Vec<f64> = x.iter().map(|_| 95.0 + 0.01 * normal.next()).collect();

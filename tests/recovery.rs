@@ -60,12 +60,8 @@ fn exact_data_give_the_truth_for_both_mounts_and_both_signs_of_z() {
 
 #[test]
 fn exact_data_with_poses_turned_by_half_turns_give_the_truth() {
-    let clean = simulate(&SimulationOptions {
-        num_steps: 7,
-        step_mm: 2.0,
-        num_points: 200,
-        ..SimulationOptions::noise_free()
-    });
+    let clean =
+        simulate(&SimulationOptions { num_steps: 7, step_mm: 2.0, num_points: 200, ..SimulationOptions::noise_free() });
     // Turning base and flange by half turns makes some of the poses and the calibration themselves half turns.
     let half_turns = [Vec3::x(), Vec3::y(), Vec3::z(), Vec3::new(1.0, 1.0, 0.0).normalize()];
     for axis in half_turns {
@@ -265,10 +261,5 @@ fn the_same_session_gives_the_same_bits() {
 }
 
 fn small() -> SimulationOptions {
-    SimulationOptions {
-        num_steps: 7,
-        step_mm: 2.0,
-        num_points: 160,
-        ..SimulationOptions::default()
-    }
+    SimulationOptions { num_steps: 7, step_mm: 2.0, num_points: 160, ..SimulationOptions::default() }
 }

@@ -17,11 +17,7 @@ fn documented_commands() -> Vec<SimulateArgs> {
     include_str!("../docs/samples.md")
         .lines()
         .filter_map(|line| line.strip_prefix("handeye "))
-        .map(|line| {
-            SimulateLine::try_parse_from(shell_words(line))
-                .expect("a documented command parses")
-                .args
-        })
+        .map(|line| SimulateLine::try_parse_from(shell_words(line)).expect("a documented command parses").args)
         .collect()
 }
 
@@ -30,11 +26,7 @@ fn shell_words(line: &str) -> Vec<String> {
     line.split('"')
         .enumerate()
         .flat_map(|(idx, part)| {
-            if idx % 2 == 1 {
-                vec![part.to_owned()]
-            } else {
-                part.split_whitespace().map(str::to_owned).collect()
-            }
+            if idx % 2 == 1 { vec![part.to_owned()] } else { part.split_whitespace().map(str::to_owned).collect() }
         })
         .collect()
 }
@@ -51,11 +43,7 @@ fn simulated_samples_are_what_their_documented_commands_give() {
             std::fs::write(&path, &written).expect("the sample can be written");
         }
         let on_disk = std::fs::read_to_string(&path).expect("the sample is there");
-        assert!(
-            written == on_disk,
-            "{} differs from what its command gives",
-            args.out.display()
-        );
+        assert!(written == on_disk, "{} differs from what its command gives", args.out.display());
     }
 }
 
@@ -63,11 +51,7 @@ fn simulated_samples_are_what_their_documented_commands_give() {
 fn every_sample_opens_and_survives_saving() {
     for sample in samples::ALL {
         let session = parse(sample.json.as_bytes(), sample.file_name).expect(sample.file_name);
-        assert!(
-            !session.name.is_empty() && !session.notes.is_empty(),
-            "{} has a lesson",
-            sample.file_name
-        );
+        assert!(!session.name.is_empty() && !session.notes.is_empty(), "{} has a lesson", sample.file_name);
         let again = parse(to_json(&session).as_bytes(), sample.file_name).expect(sample.file_name);
         assert_eq!(session, again, "{}", sample.file_name);
     }
@@ -89,12 +73,7 @@ fn printed_errors_follow_from_printed_centres_but_for_the_known_misprints() {
         let published = session.published.expect("it is from a paper");
         assert_eq!(published.ball_in_base_mm.len(), 5);
         assert_eq!(published.error_from_first_mm.len(), 5);
-        for (row, (ball, printed)) in published
-            .ball_in_base_mm
-            .iter()
-            .zip(&published.error_from_first_mm)
-            .enumerate()
-        {
+        for (row, (ball, printed)) in published.ball_in_base_mm.iter().zip(&published.error_from_first_mm).enumerate() {
             let error = ball - published.ball_in_base_mm[0];
             for axis in 0..3 {
                 if (error[axis] - printed[axis]).abs() > rounding_mm {
@@ -117,12 +96,6 @@ fn the_papers_quaternions_are_normalised_with_a_note() {
         // Of Table 2's quaternions one happens to have unit norm within the note's threshold.
         assert_eq!(*found, num_poses, "{}", sample.file_name);
         let is_point = |capture: &handeye::session::Capture| matches!(capture.reading, Reading::Point(_));
-        assert!(
-            loaded
-                .session
-                .stations
-                .iter()
-                .all(|station| station.captures.iter().all(is_point))
-        );
+        assert!(loaded.session.stations.iter().all(|station| station.captures.iter().all(is_point)));
     }
 }

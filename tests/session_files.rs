@@ -121,17 +121,11 @@ fn files_that_are_no_session_at_all_are_refused() {
     check_refused(" \n\t", &["found an empty file"]);
     check_refused("[]", &["top level: found an empty list, expected a session"]);
     check_refused("null", &["top level: found null"]);
-    check_refused(
-        "{\"format\": \"handeye-session\"",
-        &["line 1, column 28: found the end of the file"],
-    );
+    check_refused("{\"format\": \"handeye-session\"", &["line 1, column 28: found the end of the file"]);
     check_refused(&VALID[..VALID.len() / 2], &["found the end of the file, expected JSON"]);
     check_refused(&format!("{VALID} x"), &["found `x`", "trailing characters"]);
     check_refused(&"[".repeat(100_000), &["recursion limit exceeded"]);
-    check_refused(
-        &format!("{{\"deep\": {}", "{\"a\":".repeat(10_000)),
-        &["recursion limit exceeded"],
-    );
+    check_refused(&format!("{{\"deep\": {}", "{\"a\":".repeat(10_000)), &["recursion limit exceeded"]);
     check_refused("x,y,z\n1,2,3\n", &["line 1, column 1: found `x,y,z`"]);
 }
 
@@ -142,10 +136,7 @@ fn text_must_be_utf8_and_may_begin_with_a_byte_order_mark() {
     assert_eq!(parse(&bytes, "bom.json"), Ok(valid()));
     let broken = b"{\n  \"name\": \"\xff\" }";
     let refusal = parse(broken, "latin.json").expect_err("not UTF-8").to_string();
-    assert!(
-        refusal.contains("latin.json, line 2, column 12: found bytes that are not UTF-8"),
-        "{refusal}"
-    );
+    assert!(refusal.contains("latin.json, line 2, column 12: found bytes that are not UTF-8"), "{refusal}");
 }
 
 #[test]
@@ -158,20 +149,9 @@ fn the_valid_session_is_read_as_written() {
     assert!(!session.stations[0].enabled && session.stations[1].enabled);
     assert_eq!(session.stations[1].label, "2", "the label is its number by default");
     assert_eq!(session.stations[0].captures[1].step_mm, Some(-0.5));
-    assert_eq!(
-        session.stations[0].captures[1].reading,
-        Reading::Point(Vec3::new(4.0, 5.0, 6.0))
-    );
-    let kuka = PoseConvention::by_id("kuka-abc")
-        .expect("known")
-        .rotation_from_angles_deg([180.0, 10.0, 20.0]);
-    assert!(
-        session.stations[1].captures[0]
-            .base_from_flange
-            .rotation()
-            .angle_to(&kuka)
-            < 1e-12
-    );
+    assert_eq!(session.stations[0].captures[1].reading, Reading::Point(Vec3::new(4.0, 5.0, 6.0)));
+    let kuka = PoseConvention::by_id("kuka-abc").expect("known").rotation_from_angles_deg([180.0, 10.0, 20.0]);
+    assert!(session.stations[1].captures[0].base_from_flange.rotation().angle_to(&kuka) < 1e-12);
     assert_eq!(parse(to_json(&session).as_bytes(), "again.json"), Ok(session));
 }
 
@@ -180,20 +160,14 @@ fn a_session_without_stations_and_optional_fields_is_fine() {
     let json = r#"{"format": "handeye-session", "version": 1, "target": {"kind": "point"}, "stations": [],
                    "robot": null, "published": null}"#;
     let session = parse(json.as_bytes(), "empty.json").expect("valid");
-    assert_eq!(
-        (session.name.as_str(), session.stations.len(), session.mount),
-        ("", 0, Mount::OnFlange)
-    );
+    assert_eq!((session.name.as_str(), session.stations.len(), session.mount), ("", 0, Mount::OnFlange));
     assert_eq!(parse(to_json(&session).as_bytes(), "again.json"), Ok(session));
 }
 
 #[test]
 fn plate_and_sequence_sessions_are_read_and_kept() {
     let plate = VALID
-        .replace(
-            "\"kind\": \"ball\", \"radius_mm\": 15.0",
-            "\"kind\": \"right-angle-plate\"",
-        )
+        .replace("\"kind\": \"ball\", \"radius_mm\": 15.0", "\"kind\": \"right-angle-plate\"")
         .replace("\"side\": \"+\"", "\"edge\": \"q\"")
         .replace(
             "{ \"captures\": [\n        { \"base_from_flange\": { \"translation_mm\": [7",
@@ -206,12 +180,7 @@ fn plate_and_sequence_sessions_are_read_and_kept() {
     let sequence =
         r#"{"format": "handeye-session", "version": 1, "target": {"kind": "rgbd"}, "sequence": "desk/run 1"}"#;
     let session = parse(sequence.as_bytes(), "rgbd.json").expect("valid");
-    assert_eq!(
-        session.target,
-        Target::Rgbd {
-            sequence: "desk/run 1".to_owned()
-        }
-    );
+    assert_eq!(session.target, Target::Rgbd { sequence: "desk/run 1".to_owned() });
     assert_eq!(parse(to_json(&session).as_bytes(), "again.json"), Ok(session));
 }
 
@@ -224,10 +193,7 @@ fn a_fixed_sensors_truth_has_the_names_of_its_frames_and_either_is_read() {
     let session = parse(fixed_names.as_bytes(), "fixed.json").expect("valid");
     assert_eq!(parse(on_flange_names.as_bytes(), "fixed.json").as_ref(), Ok(&session));
     let saved = to_json(&session);
-    assert!(
-        saved.contains("\"base_from_sensor\"") && saved.contains("\"ball_in_flange_mm\""),
-        "{saved}"
-    );
+    assert!(saved.contains("\"base_from_sensor\"") && saved.contains("\"ball_in_flange_mm\""), "{saved}");
 }
 
 #[test]
@@ -272,10 +238,7 @@ fn the_text_is_stable_and_readable() {
         "      \"captures\": [",
         "            \"z_mm\": [0.25, null]",
     ] {
-        assert!(
-            saved.lines().any(|found| found == line),
-            "{line:?} is no line of\n{saved}"
-        );
+        assert!(saved.lines().any(|found| found == line), "{line:?} is no line of\n{saved}");
     }
     assert_eq!(to_json(&parse(saved.as_bytes(), "again.json").expect("valid")), saved);
 }
@@ -288,19 +251,10 @@ fn a_rounded_quaternion_is_normalised_and_only_a_badly_rounded_one_is_noted() {
     };
     let rounded = with_quaternion("[-0.6000001, -0.8, 0, 0]");
     assert_eq!(rounded.notes, []);
-    let quaternion = rounded.session.stations[0].captures[0]
-        .base_from_flange
-        .quaternion_wxyz();
+    let quaternion = rounded.session.stations[0].captures[0].base_from_flange.quaternion_wxyz();
     assert!((quaternion.iter().map(|v| v * v).sum::<f64>() - 1.0).abs() < 1e-15 && quaternion[0] > 0.0);
     let noted = with_quaternion("[0.6004, 0.8, 0, 0]");
-    let [
-        check::Finding::QuaternionsNormalised {
-            num_poses: 1,
-            worst_path,
-            ..
-        },
-    ] = noted.notes.as_slice()
-    else {
+    let [check::Finding::QuaternionsNormalised { num_poses: 1, worst_path, .. }] = noted.notes.as_slice() else {
         panic!("{:?}", noted.notes);
     };
     assert_eq!(worst_path, "stations[0].captures[0].base_from_flange.quaternion_wxyz");
@@ -312,10 +266,7 @@ fn saving_and_opening_gives_the_same_session_through_unknown_permissions_and_lin
     let path = folder.path().join("cell 3.json");
     save(&valid(), &path).expect("saved");
     assert_eq!(load(&path), Ok(valid()));
-    let other = Session {
-        name: "other".to_owned(),
-        ..valid()
-    };
+    let other = Session { name: "other".to_owned(), ..valid() };
     #[cfg(unix)]
     let path = {
         use std::os::unix::fs::PermissionsExt;
@@ -348,32 +299,17 @@ fn a_failed_save_leaves_the_old_file_whole() {
         Transform::from_parts(Vec3::new(f64::NAN, 0.0, 0.0), so3::exp(Vec3::zeros()));
     let refusal = save(&broken, &path).expect_err("could not be opened again");
     assert!(matches!(refusal, SessionError::WouldNotReadBack { .. }), "{refusal}");
-    assert!(
-        refusal
-            .to_string()
-            .contains("stations[0].captures[0].base_from_flange.translation_mm[0]: found null")
-    );
+    assert!(refusal.to_string().contains("stations[0].captures[0].base_from_flange.translation_mm[0]: found null"));
     assert_eq!(fs::read(&path).expect("there"), before);
 
     let in_the_way = folder.path().join("folder.json");
     fs::create_dir(&in_the_way).expect("made");
-    for target in [
-        in_the_way.clone(),
-        folder.path().join("missing").join("cell.json"),
-        path.join("cell.json"),
-    ] {
+    for target in [in_the_way.clone(), folder.path().join("missing").join("cell.json"), path.join("cell.json")] {
         let refusal = save(&valid(), &target).expect_err("cannot be written");
         assert!(matches!(refusal, SessionError::Unwritable { .. }), "{refusal}");
-        assert!(
-            refusal.to_string().contains("cannot save") && !refusal.to_string().contains('\n'),
-            "{refusal}"
-        );
+        assert!(refusal.to_string().contains("cannot save") && !refusal.to_string().contains('\n'), "{refusal}");
     }
-    assert_eq!(
-        fs::read_dir(folder.path()).expect("listed").count(),
-        2,
-        "nothing is left behind"
-    );
+    assert_eq!(fs::read_dir(folder.path()).expect("listed").count(), 2, "nothing is left behind");
 }
 
 #[test]
@@ -382,18 +318,9 @@ fn what_is_no_file_is_refused() {
     let refusal = load(folder.path()).expect_err("a folder").to_string();
     assert!(refusal.contains("found a folder, expected a session file"), "{refusal}");
     let refusal = load(&folder.path().join("none.json")).expect_err("missing").to_string();
-    assert!(
-        refusal.starts_with("cannot read ") && refusal.contains("none.json"),
-        "{refusal}"
-    );
+    assert!(refusal.starts_with("cannot read ") && refusal.contains("none.json"), "{refusal}");
     let huge = folder.path().join("huge.json");
-    fs::File::create(&huge)
-        .expect("made")
-        .set_len(600 << 20)
-        .expect("sparse");
+    fs::File::create(&huge).expect("made").set_len(600 << 20).expect("sparse");
     let refusal = load(&huge).expect_err("huge").to_string();
-    assert!(
-        refusal.contains("found 629145600 bytes, expected a session of at most 536870912"),
-        "{refusal}"
-    );
+    assert!(refusal.contains("found 629145600 bytes, expected a session of at most 536870912"), "{refusal}");
 }

@@ -32,18 +32,11 @@ fn reading() -> impl Strategy<Value = Reading> {
 }
 
 fn station() -> impl Strategy<Value = Station> {
-    let capture =
-        (pose(), reading(), prop::option::of(-1e3..1e3)).prop_map(|(base_from_flange, reading, step_mm)| Capture {
-            base_from_flange,
-            reading,
-            step_mm,
-            unknown: serde_json::Map::new(),
-        });
-    let side = prop_oneof![
-        Just(SideChoice::Auto),
-        Just(SideChoice::Given(Side::Plus)),
-        Just(SideChoice::Given(Side::Minus))
-    ];
+    let capture = (pose(), reading(), prop::option::of(-1e3..1e3)).prop_map(|(base_from_flange, reading, step_mm)| {
+        Capture { base_from_flange, reading, step_mm, unknown: serde_json::Map::new() }
+    });
+    let side =
+        prop_oneof![Just(SideChoice::Auto), Just(SideChoice::Given(Side::Plus)), Just(SideChoice::Given(Side::Minus))];
     (any::<bool>(), side, prop::collection::vec(capture, 1..4)).prop_map(|(enabled, side, captures)| Station {
         label: String::new(),
         enabled,

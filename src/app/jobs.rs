@@ -26,11 +26,7 @@ impl Watch for JobWatch {
     fn report(&mut self, done: usize, total: usize) -> Result<(), Cancelled> {
         self.0.done.store(done, Ordering::Relaxed);
         self.0.total.store(total, Ordering::Relaxed);
-        if self.0.cancelled.load(Ordering::Relaxed) {
-            Err(Cancelled)
-        } else {
-            Ok(())
-        }
+        if self.0.cancelled.load(Ordering::Relaxed) { Err(Cancelled) } else { Ok(()) }
     }
 }
 
@@ -112,12 +108,9 @@ impl<T: Send + 'static> Slot<T> {
     /// Parts done and in all, of a running job.
     #[must_use]
     pub fn progress(&self) -> Option<(usize, usize)> {
-        self.running.as_ref().map(|running| {
-            (
-                running.shared.done.load(Ordering::Relaxed),
-                running.shared.total.load(Ordering::Relaxed),
-            )
-        })
+        self.running
+            .as_ref()
+            .map(|running| (running.shared.done.load(Ordering::Relaxed), running.shared.total.load(Ordering::Relaxed)))
     }
 }
 
@@ -136,7 +129,12 @@ mod tests {
 
     fn wake() -> (Wake, Receiver<()>) {
         let (sender, receiver) = sync_channel(8);
-        (Arc::new(move || { sender.try_send(()).ok(); }), receiver)
+        (
+            Arc::new(move || {
+                sender.try_send(()).ok();
+            }),
+            receiver,
+        )
     }
 
     #[test]

@@ -28,13 +28,7 @@ pub struct Document {
 impl Document {
     fn new(session: Session, path: Option<PathBuf>, revision: u64) -> Self {
         let session = Arc::new(session);
-        Self {
-            saved: Arc::clone(&session),
-            session,
-            path,
-            revision,
-            history: History::default(),
-        }
+        Self { saved: Arc::clone(&session), session, path, revision, history: History::default() }
     }
 
     /// Whether there are edits that no file holds.
@@ -273,10 +267,9 @@ impl Workbench {
     fn save(&mut self) {
         match self.document.as_ref().map(|document| document.path.clone()) {
             Some(Some(path)) => self.start_saving(path),
-            Some(None) => self.notify(
-                NoticeKind::Error,
-                "this session has no file yet: choose one with \"Save as…\"".to_owned(),
-            ),
+            Some(None) => {
+                self.notify(NoticeKind::Error, "this session has no file yet: choose one with \"Save as…\"".to_owned())
+            }
             None => self.notify(NoticeKind::Error, "there is no open session to save".to_owned()),
         }
     }
@@ -349,23 +342,13 @@ impl Workbench {
                 Ok(problem) => (solve_all(&problem, &Method::ALL, watch)?, None),
                 Err(refusal) => (Vec::new(), Some(refusal.to_string())),
             };
-            Ok(Results {
-                revision,
-                measured,
-                methods,
-                refusal,
-                elapsed: start.elapsed(),
-            })
+            Ok(Results { revision, measured, methods, refusal, elapsed: start.elapsed() })
         });
     }
 
     fn notify(&mut self, kind: NoticeKind, message: String) {
         self.last_notice_id += 1;
-        self.notices.push(Notice {
-            id: self.last_notice_id,
-            kind,
-            message,
-        });
+        self.notices.push(Notice { id: self.last_notice_id, kind, message });
     }
 
     fn notify_broken<T>(&mut self, what: &str, outcome: &JobOutcome<T>) {

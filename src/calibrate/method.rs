@@ -20,12 +20,7 @@ pub enum Method {
 
 impl Method {
     /// All methods, in the order in which they are shown.
-    pub const ALL: [Self; 4] = [
-        Self::BallFixedPoint,
-        Self::BallMaxArcStep,
-        Self::BallMaxArc,
-        Self::BallBundle,
-    ];
+    pub const ALL: [Self; 4] = [Self::BallFixedPoint, Self::BallMaxArcStep, Self::BallMaxArc, Self::BallBundle];
 
     /// The name in files and on the command line.
     #[must_use]

@@ -34,13 +34,7 @@ impl CentreObservation {
     /// A centre that was measured, with unit weight.
     #[must_use]
     pub fn point(station: usize, base_from_flange: Rigid, centre_in_sensor: Vec3) -> Self {
-        Self {
-            station,
-            base_from_flange,
-            centre_in_sensor,
-            information: Mat3::identity(),
-            pull: Vec3::zeros(),
-        }
+        Self { station, base_from_flange, centre_in_sensor, information: Mat3::identity(), pull: Vec3::zeros() }
     }
 }
 

@@ -42,15 +42,10 @@ impl PoseGeometry {
     pub fn new(poses: &[Rigid]) -> Result<Self, SolveError> {
         #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 poses")]
         let scale = 1.0 / poses.len() as f64;
-        let rotations_inverse: Vec<Mat3> = poses
-            .iter()
-            .map(|pose| pose.rotation.to_rotation_matrix().matrix().transpose())
-            .collect();
-        let offsets: Vec<Vec3> = poses
-            .iter()
-            .zip(&rotations_inverse)
-            .map(|(pose, inverse)| inverse * pose.translation.vector)
-            .collect();
+        let rotations_inverse: Vec<Mat3> =
+            poses.iter().map(|pose| pose.rotation.to_rotation_matrix().matrix().transpose()).collect();
+        let offsets: Vec<Vec3> =
+            poses.iter().zip(&rotations_inverse).map(|(pose, inverse)| inverse * pose.translation.vector).collect();
         let mean_rotation_inverse = rotations_inverse.iter().sum::<Mat3>() * scale;
         let mean_offset = offsets.iter().sum::<Vec3>() * scale;
         let spread = rotations_inverse
@@ -64,12 +59,11 @@ impl PoseGeometry {
         let mut order = [0, 1, 2];
         order.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
         let rotation_about_axes = order.map(|idx| eigen.eigenvalues[idx] * scale);
-        let weakest_axis_in_flange =
-            (mean_rotation_inverse * eigen.eigenvectors.column(order[0])).try_normalize(1e-9).unwrap_or_else(Vec3::zeros);
+        let weakest_axis_in_flange = (mean_rotation_inverse * eigen.eigenvectors.column(order[0]))
+            .try_normalize(1e-9)
+            .unwrap_or_else(Vec3::zeros);
         if rotation_about_axes[2] < NO_ROTATION {
-            return Err(SolveError::NoRotation {
-                span_deg: rotation_span(poses).to_degrees(),
-            });
+            return Err(SolveError::NoRotation { span_deg: rotation_span(poses).to_degrees() });
         }
         if rotation_about_axes[0] < NO_ROTATION {
             return Err(SolveError::RotationsAboutOneAxis {
@@ -158,7 +152,8 @@ impl ReducedProblem<'_> {
                 return minimum;
             }
         }
-        let mut minima: Vec<RotationMinimum> = octahedral_rotations().into_iter().map(|start| self.descend(start)).collect();
+        let mut minima: Vec<RotationMinimum> =
+            octahedral_rotations().into_iter().map(|start| self.descend(start)).collect();
         minima.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         minima[0]
     }
@@ -193,10 +188,8 @@ impl ReducedProblem<'_> {
             for axis in 0..3 {
                 let derivative = matrix.matrix() * hat(Vec3::ith(axis, 1.0));
                 gradient[axis] = derivative.dot(&pull);
-                ball_derivative.set_column(
-                    axis,
-                    &(self.ball_by_rotation * Vec9::from_column_slice(derivative.as_slice())),
-                );
+                ball_derivative
+                    .set_column(axis, &(self.ball_by_rotation * Vec9::from_column_slice(derivative.as_slice())));
             }
             let hessian = Mat3::identity() * self.centre_spread.trace()
                 - self.centre_spread
@@ -222,10 +215,7 @@ impl ReducedProblem<'_> {
                 }
             }
         }
-        RotationMinimum {
-            flange_from_sensor: rotation,
-            cost,
-        }
+        RotationMinimum { flange_from_sensor: rotation, cost }
     }
 
     fn ball(&self, rotation: &Mat3) -> Vec3 {
@@ -252,10 +242,7 @@ impl ReducedProblem<'_> {
         let ball_in_base = self.ball(matrix.matrix());
         let translation =
             self.poses.mean_rotation_inverse * ball_in_base - self.poses.mean_offset - matrix * self.mean_centre;
-        State {
-            flange_from_sensor: Rigid::from_parts(translation.into(), flange_from_sensor),
-            ball_in_base,
-        }
+        State { flange_from_sensor: Rigid::from_parts(translation.into(), flange_from_sensor), ball_in_base }
     }
 }
 

@@ -66,12 +66,7 @@ where
             return Err(SolveError::Diverged);
         }
         if size <= settled {
-            return Ok(Minimum {
-                state: trial,
-                hessian: normal.hessian,
-                num_iterations: iteration,
-                converged: true,
-            });
+            return Ok(Minimum { state: trial, hessian: normal.hessian, num_iterations: iteration, converged: true });
         }
         let trial_normal = Normal::of(observations.clone(), &trial);
         // Costs are differences from the linearisation points; near the minimum they are equal to rounding.
@@ -86,12 +81,7 @@ where
             damping = (damping * 10.0).max(1e-6);
         }
     }
-    Ok(Minimum {
-        state,
-        hessian: normal.hessian,
-        num_iterations: MAX_ITERATIONS,
-        converged: false,
-    })
+    Ok(Minimum { state, hessian: normal.hessian, num_iterations: MAX_ITERATIONS, converged: false })
 }
 
 fn step_size(step: &Gradient) -> f64 {
@@ -125,7 +115,8 @@ impl Normal {
     /// twice as long.
     #[must_use]
     pub fn of<'a>(observations: impl Iterator<Item = &'a CentreObservation>, state: &State) -> Self {
-        let (mut rotation_rotation, mut rotation_shift, mut rotation_ball) = (Mat3::zeros(), Mat3::zeros(), Mat3::zeros());
+        let (mut rotation_rotation, mut rotation_shift, mut rotation_ball) =
+            (Mat3::zeros(), Mat3::zeros(), Mat3::zeros());
         let (mut shift_shift, mut shift_ball, mut ball_ball) = (Mat3::zeros(), Mat3::zeros(), Mat3::zeros());
         let (mut by_rotation, mut by_shift, mut by_ball) = (Vec3::zeros(), Vec3::zeros(), Vec3::zeros());
         let mut cost = 0.0;
@@ -198,9 +189,7 @@ pub fn covariance_for_unit_noise(hessian: &Hessian) -> Result<Hessian, SolveErro
 
 fn undetermined(hessian: &Hessian) -> SolveError {
     if hessian.iter().all(|v| v.is_finite()) {
-        SolveError::Undetermined {
-            condition: scaled_condition(hessian),
-        }
+        SolveError::Undetermined { condition: scaled_condition(hessian) }
     } else {
         SolveError::Diverged
     }

@@ -23,8 +23,7 @@ pub fn station_ball<'a>(
         let rotation = (observation.base_from_flange.rotation * state.flange_from_sensor.rotation).to_rotation_matrix();
         let centre = state.ball_in_sensor(&observation.base_from_flange);
         information += rotation.matrix() * observation.information * rotation.matrix().transpose();
-        pull += rotation
-            * (observation.information * (observation.centre_in_sensor - centre) + observation.pull);
+        pull += rotation * (observation.information * (observation.centre_in_sensor - centre) + observation.pull);
     }
     let shift = information.cholesky().map_or_else(Vec3::zeros, |factor| factor.solve(&pull));
     state.ball_in_base + shift

@@ -38,11 +38,7 @@ pub fn listing(loaded: &Loaded) -> String {
     let all: Vec<Finding> = notes.iter().cloned().chain(findings(session)).collect();
     let mut listing = format!(
         "a valid session: {}, {} stations ({} enabled), {} profiles or points\n",
-        if session.name.is_empty() {
-            "unnamed"
-        } else {
-            session.name.lines().next().unwrap_or_default()
-        },
+        if session.name.is_empty() { "unnamed" } else { session.name.lines().next().unwrap_or_default() },
         session.stations.len(),
         session.stations.iter().filter(|station| station.enabled).count(),
         session.num_captures(),

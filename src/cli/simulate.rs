@@ -206,16 +206,10 @@ fn options(args: &SimulateArgs) -> Result<SimulationOptions, SimulateRefusal> {
     }
     let step_mm = args.step_mm.unwrap_or(STEP_RATIO * radius_mm);
     if step_mm > radius_mm {
-        return Err(SimulateRefusal::StepTooLarge {
-            found_mm: step_mm,
-            radius_mm,
-        });
+        return Err(SimulateRefusal::StepTooLarge { found_mm: step_mm, radius_mm });
     }
     if let Some(found) = args.bad_pose.filter(|number| *number > args.stations) {
-        return Err(SimulateRefusal::NoSuchStation {
-            found,
-            num_stations: args.stations,
-        });
+        return Err(SimulateRefusal::NoSuchStation { found, num_stations: args.stations });
     }
     let has = |dirt: DirtArg| args.dirty.contains(&dirt) || args.dirty.contains(&DirtArg::All);
     Ok(SimulationOptions {
@@ -328,13 +322,8 @@ mod tests {
             ("--step-mm 16", "expected at most the radius of 15 mm"),
             ("--stations 5 --bad-pose 6", "expected 1 to 5"),
         ] {
-            let refusal = options(&parsed(arguments).expect("well formed"))
-                .expect_err(arguments)
-                .to_string();
-            assert!(
-                refusal.contains(fragment) && !refusal.contains('\n'),
-                "{arguments}: {refusal}"
-            );
+            let refusal = options(&parsed(arguments).expect("well formed")).expect_err(arguments).to_string();
+            assert!(refusal.contains(fragment) && !refusal.contains('\n'), "{arguments}: {refusal}");
         }
     }
 }

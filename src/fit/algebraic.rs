@@ -63,10 +63,7 @@ pub fn hyper(x_mm: &[f64], z_mm: &[f64]) -> Result<Circle, FitError> {
 fn moments(x_mm: &[f64], z_mm: &[f64]) -> Result<Moments, FitError> {
     let num_points = x_mm.len().min(z_mm.len());
     if num_points < 3 {
-        return Err(FitError::TooFewPoints {
-            found: num_points,
-            needed: 3,
-        });
+        return Err(FitError::TooFewPoints { found: num_points, needed: 3 });
     }
     #[expect(clippy::cast_precision_loss, reason = "a profile has far fewer than 2^52 points")]
     let scale = 1.0 / num_points as f64;
@@ -78,16 +75,7 @@ fn moments(x_mm: &[f64], z_mm: &[f64]) -> Result<Moments, FitError> {
         [x * x, x * z, z * z, x * w, z * w, w * w]
     });
     let [xx, xz, zz, xw, zw, ww] = sums.map(|sum| sum * scale);
-    Ok(Moments {
-        mean_x,
-        mean_z,
-        xx,
-        xz,
-        zz,
-        xw,
-        zw,
-        ww,
-    })
+    Ok(Moments { mean_x, mean_z, xx, xz, zz, xw, zw, ww })
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -139,9 +127,5 @@ fn circle_at(m: &Moments, root: f64, radius_term: f64) -> Result<Circle, FitErro
     if !(x.is_finite() && z.is_finite() && radius_mm.is_finite()) {
         return Err(FitError::Diverged);
     }
-    Ok(Circle {
-        x_mm: x + m.mean_x,
-        z_mm: z + m.mean_z,
-        radius_mm,
-    })
+    Ok(Circle { x_mm: x + m.mean_x, z_mm: z + m.mean_z, radius_mm })
 }

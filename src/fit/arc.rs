@@ -98,10 +98,7 @@ pub fn extract_arc(profile: &Profile, options: &ArcOptions) -> Result<ArcFit, Ar
         z_mm.push(z);
     }
     if x_mm.len() < MIN_POINTS {
-        return Err(ArcRefusal::TooFewPoints {
-            found: x_mm.len(),
-            needed: MIN_POINTS,
-        });
+        return Err(ArcRefusal::TooFewPoints { found: x_mm.len(), needed: MIN_POINTS });
     }
     let noise_mm = options.profile_std_mm.unwrap_or_else(|| local_noise(&z_mm));
     let tolerance_mm = (4.0 * noise_mm).max(SEARCH_TOLERANCE_PART * options.ball_radius_mm);
@@ -113,10 +110,8 @@ pub fn extract_arc(profile: &Profile, options: &ArcOptions) -> Result<ArcFit, Ar
     };
     let (near_x, near_z) = near(&x_mm, &z_mm, start, 3.0 * tolerance_mm);
     let (coarse, _) = robust::fit_from(&near_x, &near_z, start)?;
-    let (fit, kept) = fit_without_biased_flanks(&near_x, &near_z, coarse.circle).ok_or(ArcRefusal::NoArc {
-        limit_mm,
-        num_points: x_mm.len(),
-    })??;
+    let (fit, kept) = fit_without_biased_flanks(&near_x, &near_z, coarse.circle)
+        .ok_or(ArcRefusal::NoArc { limit_mm, num_points: x_mm.len() })??;
     finish(profile, options, limit_mm, &fit, kept)
 }
 
@@ -163,11 +158,7 @@ fn agree(wide: &CircleFit, narrow: &CircleFit) -> bool {
 /// The circle of a profile that shows the ball and nothing else, found without a search.
 fn only_ball(x_mm: &[f64], z_mm: &[f64], limit_mm: f64, tolerance_mm: f64) -> Option<Circle> {
     let circle = algebraic::hyper(x_mm, z_mm).ok()?;
-    let num_near = x_mm
-        .iter()
-        .zip(z_mm)
-        .filter(|(x, z)| circle.distance_mm(**x, **z).abs() <= tolerance_mm)
-        .count();
+    let num_near = x_mm.iter().zip(z_mm).filter(|(x, z)| circle.distance_mm(**x, **z).abs() <= tolerance_mm).count();
     #[expect(clippy::cast_precision_loss, reason = "a part of the number of points")]
     let part = num_near as f64 / x_mm.len() as f64;
     (circle.radius_mm <= limit_mm && part >= ONLY_BALL_PART).then_some(circle)
@@ -181,11 +172,8 @@ fn search(
     tolerance_mm: f64,
 ) -> Result<Circle, ArcRefusal> {
     let within = |max_radius_mm: f64| {
-        let search = CircleSearch {
-            min_radius_mm: MIN_RADIUS_PART * options.ball_radius_mm,
-            max_radius_mm,
-            tolerance_mm,
-        };
+        let search =
+            CircleSearch { min_radius_mm: MIN_RADIUS_PART * options.ball_radius_mm, max_radius_mm, tolerance_mm };
         #[expect(clippy::cast_precision_loss, reason = "a profile has far fewer than 2^52 points")]
         let needed_part = MIN_POINTS as f64 / x_mm.len() as f64;
         find_circle(x_mm, z_mm, &search).filter(|(_, part)| *part >= needed_part.max(0.05))
@@ -205,26 +193,17 @@ fn search(
             });
         }
     }
-    found.map(|(circle, _)| circle).ok_or(ArcRefusal::NoArc {
-        limit_mm,
-        num_points: x_mm.len(),
-    })
+    found.map(|(circle, _)| circle).ok_or(ArcRefusal::NoArc { limit_mm, num_points: x_mm.len() })
 }
 
 /// Noise along the range axis from second differences, to which the shape of the ball adds next to nothing.
 fn local_noise(z_mm: &[f64]) -> f64 {
-    let mut differences: Vec<f64> = z_mm
-        .windows(3)
-        .map(|z| (z[0] - 2.0 * z[1] + z[2]) / 6.0_f64.sqrt())
-        .collect();
+    let mut differences: Vec<f64> = z_mm.windows(3).map(|z| (z[0] - 2.0 * z[1] + z[2]) / 6.0_f64.sqrt()).collect();
     if differences.is_empty() { 0.0 } else { robust_std_about_zero(&mut differences) }
 }
 
 fn near(x_mm: &[f64], z_mm: &[f64], circle: Circle, distance_mm: f64) -> (Vec<f64>, Vec<f64>) {
-    x_mm.iter()
-        .zip(z_mm)
-        .filter(|(x, z)| circle.distance_mm(**x, **z).abs() <= distance_mm)
-        .unzip()
+    x_mm.iter().zip(z_mm).filter(|(x, z)| circle.distance_mm(**x, **z).abs() <= distance_mm).unzip()
 }
 
 fn within_flanks(x_mm: &[f64], z_mm: &[f64], circle: Circle, part: f64) -> (Vec<f64>, Vec<f64>) {
@@ -240,17 +219,11 @@ fn finish(
 ) -> Result<ArcFit, ArcRefusal> {
     let circle = fit.circle;
     if circle.radius_mm > limit_mm {
-        return Err(ArcRefusal::LargerThanBall {
-            found_mm: circle.radius_mm,
-            ball_radius_mm: options.ball_radius_mm,
-        });
+        return Err(ArcRefusal::LargerThanBall { found_mm: circle.radius_mm, ball_radius_mm: options.ball_radius_mm });
     }
     let angle_rad = spanned_angle(&kept, circle);
     if angle_rad.to_degrees() < MIN_ANGLE_DEG {
-        return Err(ArcRefusal::TooShort {
-            found_deg: angle_rad.to_degrees(),
-            needed_deg: MIN_ANGLE_DEG,
-        });
+        return Err(ArcRefusal::TooShort { found_deg: angle_rad.to_degrees(), needed_deg: MIN_ANGLE_DEG });
     }
     #[expect(clippy::cast_precision_loss, reason = "a profile has far fewer than 2^52 points")]
     let (count, freedom) = (kept.x_mm.len() as f64, (kept.x_mm.len() - 3) as f64);

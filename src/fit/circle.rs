@@ -55,14 +55,7 @@ pub enum CircleMethod {
 
 impl CircleMethod {
     /// All fits, in the order in which they are offered.
-    pub const ALL: [Self; 6] = [
-        Self::Robust,
-        Self::Geometric,
-        Self::Hyper,
-        Self::Taubin,
-        Self::Pratt,
-        Self::Kasa,
-    ];
+    pub const ALL: [Self; 6] = [Self::Robust, Self::Geometric, Self::Hyper, Self::Taubin, Self::Pratt, Self::Kasa];
 
     /// Fits a circle to points (x, z) in the laser plane, mm.
     ///
@@ -74,9 +67,9 @@ impl CircleMethod {
             Self::Pratt => algebraic::pratt(x_mm, z_mm),
             Self::Taubin => algebraic::taubin(x_mm, z_mm),
             Self::Hyper => algebraic::hyper(x_mm, z_mm),
-            Self::Geometric => algebraic::hyper(x_mm, z_mm)
-                .and_then(|start| geometric::fit(x_mm, z_mm, start))
-                .map(|fit| fit.circle),
+            Self::Geometric => {
+                algebraic::hyper(x_mm, z_mm).and_then(|start| geometric::fit(x_mm, z_mm, start)).map(|fit| fit.circle)
+            }
             Self::Robust => robust::fit(x_mm, z_mm).map(|fit| fit.circle),
         }
     }

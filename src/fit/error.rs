@@ -53,7 +53,9 @@ pub enum ArcRefusal {
         ball_radius_mm: f64,
     },
     /// The visible piece is too short to say where its centre is.
-    #[error("the arc spans only {found_deg:.1}°; at least {needed_deg:.0}° are needed. Move the line nearer to the ball's centre")]
+    #[error(
+        "the arc spans only {found_deg:.1}°; at least {needed_deg:.0}° are needed. Move the line nearer to the ball's centre"
+    )]
     TooShort {
         /// Angle seen from the centre, degrees.
         found_deg: f64,

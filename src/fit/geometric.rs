@@ -27,10 +27,7 @@ struct Normal {
 pub fn fit(x_mm: &[f64], z_mm: &[f64], start: Circle) -> Result<CircleFit, FitError> {
     let num_points = x_mm.len().min(z_mm.len());
     if num_points < 3 {
-        return Err(FitError::TooFewPoints {
-            found: num_points,
-            needed: 3,
-        });
+        return Err(FitError::TooFewPoints { found: num_points, needed: 3 });
     }
     let mut circle = start;
     let mut normal = normal_equations(x_mm, z_mm, circle);
@@ -44,11 +41,8 @@ pub fn fit(x_mm: &[f64], z_mm: &[f64], start: Circle) -> Result<CircleFit, FitEr
             }
             continue;
         };
-        let trial = Circle {
-            x_mm: circle.x_mm + step.x,
-            z_mm: circle.z_mm + step.y,
-            radius_mm: circle.radius_mm + step.z,
-        };
+        let trial =
+            Circle { x_mm: circle.x_mm + step.x, z_mm: circle.z_mm + step.y, radius_mm: circle.radius_mm + step.z };
         let small = step.norm() <= SETTLED * circle.radius_mm.abs();
         // The cost predicted at the minimum of the quadratic: with a step this small another pass would tell nothing new.
         let negligible = step.dot(&normal.gradient).abs() <= 1e-9 * normal.cost && damping <= 0.0;
@@ -76,11 +70,9 @@ fn finish(circle: Circle, normal: &Normal, num_points: usize) -> Result<CircleFi
     let (count, freedom) = (num_points as f64, num_points.saturating_sub(3).max(1) as f64);
     let covariance = normal.matrix.try_inverse().map(|inverse| inverse * (normal.cost / freedom));
     match covariance {
-        Some(covariance) if circle.radius_mm.is_finite() && covariance.iter().all(|v| v.is_finite()) => Ok(CircleFit {
-            circle,
-            covariance,
-            rms_mm: (normal.cost / count).sqrt(),
-        }),
+        Some(covariance) if circle.radius_mm.is_finite() && covariance.iter().all(|v| v.is_finite()) => {
+            Ok(CircleFit { circle, covariance, rms_mm: (normal.cost / count).sqrt() })
+        }
         _ => Err(FitError::Diverged),
     }
 }

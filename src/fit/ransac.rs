@@ -42,8 +42,8 @@ pub fn find_circle(x_mm: &[f64], z_mm: &[f64], search: &CircleSearch) -> Option<
             clippy::cast_sign_loss,
             reason = "a part of the number of points"
         )]
-        let half_width = ((num_points as f64 * WINDOWS[hypothesis % WINDOWS.len()]) as usize)
-            .clamp(1, (num_points - 1) / 2);
+        let half_width =
+            ((num_points as f64 * WINDOWS[hypothesis % WINDOWS.len()]) as usize).clamp(1, (num_points - 1) / 2);
         let middle = half_width + random.below(num_points - 2 * half_width);
         let indices = [middle - half_width, middle, middle + half_width];
         let Some(circle) = circle_through(indices.map(|idx| (x_mm[idx], z_mm[idx]))) else {
@@ -79,11 +79,7 @@ fn circle_through([a, b, c]: [(f64, f64); 3]) -> Option<Circle> {
     let cross = 2.0 * (bx * cz - bz * cx);
     let (bb, cc) = (bx * bx + bz * bz, cx * cx + cz * cz);
     let (x, z) = ((cz * bb - bz * cc) / cross, (bx * cc - cx * bb) / cross);
-    let circle = Circle {
-        x_mm: a.0 + x,
-        z_mm: a.1 + z,
-        radius_mm: (x * x + z * z).sqrt(),
-    };
+    let circle = Circle { x_mm: a.0 + x, z_mm: a.1 + z, radius_mm: (x * x + z * z).sqrt() };
     circle.radius_mm.is_finite().then_some(circle)
 }
 

@@ -64,12 +64,8 @@ pub fn fit_from(x_mm: &[f64], z_mm: &[f64], start: Circle) -> Result<(CircleFit,
 /// The scaled median distance from the circle, over evenly spread points.
 fn coarse_std(x_mm: &[f64], z_mm: &[f64], circle: Circle) -> f64 {
     let stride = x_mm.len().div_ceil(MEDIAN_SAMPLE).max(1);
-    let mut distances: Vec<f64> = x_mm
-        .iter()
-        .zip(z_mm)
-        .step_by(stride)
-        .map(|(x, z)| circle.distance_mm(*x, *z).abs())
-        .collect();
+    let mut distances: Vec<f64> =
+        x_mm.iter().zip(z_mm).step_by(stride).map(|(x, z)| circle.distance_mm(*x, *z).abs()).collect();
     STD_OVER_MAD * median(&mut distances)
 }
 

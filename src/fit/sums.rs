@@ -10,11 +10,7 @@ const LANES: usize = 8;
 /// The loop is compiled for the wide registers of newer processors as well and the better version picked at run time. The
 /// order of the additions is that of the lanes and not of the processor, so the bits are the same on all of them.
 #[inline]
-pub(crate) fn sum_over<const N: usize>(
-    x_mm: &[f64],
-    z_mm: &[f64],
-    terms: impl Fn(f64, f64) -> [f64; N],
-) -> [f64; N] {
+pub(crate) fn sum_over<const N: usize>(x_mm: &[f64], z_mm: &[f64], terms: impl Fn(f64, f64) -> [f64; N]) -> [f64; N] {
     Arch::new().dispatch(Sums { x_mm, z_mm, terms })
 }
 

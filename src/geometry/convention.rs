@@ -48,13 +48,7 @@ const fn euler(
     axes: [Axis; 3],
     reversed: bool,
 ) -> PoseConvention {
-    PoseConvention {
-        id,
-        label,
-        angle_names,
-        formula,
-        form: Form::Euler { axes, reversed },
-    }
+    PoseConvention { id, label, angle_names, formula, form: Form::Euler { axes, reversed } }
 }
 
 impl PoseConvention {
@@ -160,25 +154,16 @@ fn euler_angles(axes: [Axis; 3], rotation: &UnitQuaternion<f64>) -> [f64; 3] {
     let parity = if (i + 1) % 3 == j { 1.0 } else { -1.0 };
     let matrix = rotation.to_rotation_matrix();
     let m = matrix.matrix();
-    let (sin_part, cos_part) = if third == k {
-        (-parity * m[(j, k)], m[(k, k)])
-    } else {
-        (m[(j, i)], -parity * m[(k, i)])
-    };
+    let (sin_part, cos_part) =
+        if third == k { (-parity * m[(j, k)], m[(k, k)]) } else { (m[(j, i)], -parity * m[(k, i)]) };
     let locked = sin_part.hypot(cos_part) < LOCKED;
     let first = if locked { 0.0 } else { sin_part.atan2(cos_part) };
     let rest = (about(axes[0], first).inverse() * rotation).to_rotation_matrix();
     let n = rest.matrix();
     let (second, last) = if third == k {
-        (
-            (parity * n[(i, k)]).atan2(n[(k, k)]),
-            (parity * n[(j, i)]).atan2(n[(j, j)]),
-        )
+        ((parity * n[(i, k)]).atan2(n[(k, k)]), (parity * n[(j, i)]).atan2(n[(j, j)]))
     } else {
-        (
-            (-parity * n[(k, i)]).atan2(n[(i, i)]),
-            (-parity * n[(j, k)]).atan2(n[(j, j)]),
-        )
+        ((-parity * n[(k, i)]).atan2(n[(i, i)]), (-parity * n[(j, k)]).atan2(n[(j, j)]))
     };
     [first, second, last]
 }
@@ -241,10 +226,7 @@ mod tests {
     #[test]
     fn ids_are_unique() {
         for (idx, convention) in PoseConvention::ALL.iter().enumerate() {
-            assert_eq!(
-                PoseConvention::ALL.iter().position(|other| other.id == convention.id),
-                Some(idx)
-            );
+            assert_eq!(PoseConvention::ALL.iter().position(|other| other.id == convention.id), Some(idx));
         }
     }
 }

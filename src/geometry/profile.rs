@@ -44,21 +44,13 @@ impl Profile {
     /// [`ProfileError::LengthMismatch`] and [`ProfileError::OutOfRange`].
     pub fn new(x_mm: Vec<f64>, z_mm: &[Option<f64>]) -> Result<Self, ProfileError> {
         if x_mm.len() != z_mm.len() {
-            return Err(ProfileError::LengthMismatch {
-                num_x: x_mm.len(),
-                num_z: z_mm.len(),
-            });
+            return Err(ProfileError::LengthMismatch { num_x: x_mm.len(), num_z: z_mm.len() });
         }
         let check = |axis: char, index: usize, value: f64| {
             if value.is_finite() && value.abs() <= Self::LIMIT_MM {
                 Ok(())
             } else {
-                Err(ProfileError::OutOfRange {
-                    axis,
-                    index,
-                    value,
-                    limit_mm: Self::LIMIT_MM,
-                })
+                Err(ProfileError::OutOfRange { axis, index, value, limit_mm: Self::LIMIT_MM })
             }
         };
         for (index, (x, z)) in x_mm.iter().zip(z_mm).enumerate() {
@@ -67,10 +59,7 @@ impl Profile {
                 check('z', index, *z)?;
             }
         }
-        Ok(Self {
-            x_mm,
-            z_mm: z_mm.iter().map(|z| z.unwrap_or(f64::NAN)).collect(),
-        })
+        Ok(Self { x_mm, z_mm: z_mm.iter().map(|z| z.unwrap_or(f64::NAN)).collect() })
     }
 
     /// Number of points, valid or not.
@@ -113,11 +102,7 @@ impl PartialEq for Profile {
     fn eq(&self, other: &Self) -> bool {
         self.x_mm == other.x_mm
             && self.z_mm.len() == other.z_mm.len()
-            && self
-                .z_mm
-                .iter()
-                .zip(&other.z_mm)
-                .all(|(a, b)| a == b || (a.is_nan() && b.is_nan()))
+            && self.z_mm.iter().zip(&other.z_mm).all(|(a, b)| a == b || (a.is_nan() && b.is_nan()))
     }
 }
 
@@ -134,10 +119,7 @@ mod tests {
 
     #[test]
     fn wrong_lengths_and_sizes_are_refused() {
-        assert_eq!(
-            Profile::new(vec![0.0], &[]),
-            Err(ProfileError::LengthMismatch { num_x: 1, num_z: 0 })
-        );
+        assert_eq!(Profile::new(vec![0.0], &[]), Err(ProfileError::LengthMismatch { num_x: 1, num_z: 0 }));
         for bad in [f64::NAN, f64::INFINITY, 1e9] {
             let refusal = Profile::new(vec![0.0], &[Some(bad)]);
             assert!(matches!(refusal, Err(ProfileError::OutOfRange { axis: 'z', index: 0, .. })));

@@ -12,10 +12,7 @@ use super::{Mat3, Rigid, Vec3};
 #[must_use]
 pub fn exp(tangent: &Vector6<f64>) -> Rigid {
     let (rotation_vector, translation) = split(tangent);
-    Rigid::from_parts(
-        Translation3::from(so3::left_jacobian(rotation_vector) * translation),
-        so3::exp(rotation_vector),
-    )
+    Rigid::from_parts(Translation3::from(so3::left_jacobian(rotation_vector) * translation), so3::exp(rotation_vector))
 }
 
 /// The twist whose exponential is `motion`, with a rotation of at most π.
@@ -34,9 +31,7 @@ pub fn right_jacobian(tangent: &Vector6<f64>) -> Matrix6<f64> {
     let mut jacobian = Matrix6::zeros();
     jacobian.fixed_view_mut::<3, 3>(0, 0).copy_from(&rotation_block);
     jacobian.fixed_view_mut::<3, 3>(3, 3).copy_from(&rotation_block);
-    jacobian
-        .fixed_view_mut::<3, 3>(3, 0)
-        .copy_from(&coupling(rotation_vector, translation));
+    jacobian.fixed_view_mut::<3, 3>(3, 0).copy_from(&coupling(rotation_vector, translation));
     jacobian
 }
 
@@ -46,11 +41,7 @@ fn coupling(rotation_vector: Vec3, translation: Vec3) -> Mat3 {
     let (p, v) = (hat(rotation_vector), hat(translation));
     let (a, b, c) = if angle < 1e-2 {
         let squared = angle * angle;
-        (
-            1.0 / 6.0 - squared / 120.0,
-            1.0 / 24.0 - squared / 720.0,
-            1.0 / 120.0 - squared / 2520.0,
-        )
+        (1.0 / 6.0 - squared / 120.0, 1.0 / 24.0 - squared / 720.0, 1.0 / 120.0 - squared / 2520.0)
     } else {
         let (sin, cos) = angle.sin_cos();
         let squared = angle * angle;
@@ -69,23 +60,13 @@ fn coupling(rotation_vector: Vec3, translation: Vec3) -> Mat3 {
 /// A tangent from its rotation (rad) and translation (mm).
 #[must_use]
 pub fn join(rotation_vector: Vec3, translation: Vec3) -> Vector6<f64> {
-    Vector6::new(
-        rotation_vector.x,
-        rotation_vector.y,
-        rotation_vector.z,
-        translation.x,
-        translation.y,
-        translation.z,
-    )
+    Vector6::new(rotation_vector.x, rotation_vector.y, rotation_vector.z, translation.x, translation.y, translation.z)
 }
 
 /// The rotation (rad) and the translation (mm) of a tangent.
 #[must_use]
 pub fn split(tangent: &Vector6<f64>) -> (Vec3, Vec3) {
-    (
-        Vec3::new(tangent[0], tangent[1], tangent[2]),
-        Vec3::new(tangent[3], tangent[4], tangent[5]),
-    )
+    (Vec3::new(tangent[0], tangent[1], tangent[2]), Vec3::new(tangent[3], tangent[4], tangent[5]))
 }
 
 #[cfg(test)]
@@ -98,10 +79,7 @@ mod tests {
         let directions = [Vec3::x(), Vec3::new(0.2, -0.9, 0.4).normalize()];
         let angles = [0.0, 1e-8, 5e-3, 0.02, 1.3, PI - 1e-6];
         let translation = Vec3::new(12.0, -7.0, 3.0);
-        directions
-            .iter()
-            .flat_map(|axis| angles.iter().map(move |angle| join(axis * *angle, translation)))
-            .collect()
+        directions.iter().flat_map(|axis| angles.iter().map(move |angle| join(axis * *angle, translation))).collect()
     }
 
     #[test]

@@ -20,11 +20,7 @@ pub fn hat(v: Vec3) -> Mat3 {
 #[must_use]
 pub fn exp(rotation_vector: Vec3) -> UnitQuaternion<f64> {
     let angle = rotation_vector.norm();
-    let half_sinc = if angle < SMALL_ANGLE {
-        0.5 - angle * angle / 48.0
-    } else {
-        (0.5 * angle).sin() / angle
-    };
+    let half_sinc = if angle < SMALL_ANGLE { 0.5 - angle * angle / 48.0 } else { (0.5 * angle).sin() / angle };
     let v = rotation_vector * half_sinc;
     UnitQuaternion::new_normalize(Quaternion::new((0.5 * angle).cos(), v.x, v.y, v.z))
 }
@@ -65,10 +61,7 @@ pub fn left_jacobian(rotation_vector: Vec3) -> Mat3 {
     } else {
         let half_sin = (0.5 * angle).sin();
         // 1 − cos θ as 2 sin²(θ/2): no cancellation.
-        (
-            2.0 * half_sin * half_sin / squared,
-            (angle - angle.sin()) / (squared * angle),
-        )
+        (2.0 * half_sin * half_sin / squared, (angle - angle.sin()) / (squared * angle))
     };
     let skew = hat(rotation_vector);
     Mat3::identity() + skew * a + skew * skew * b
@@ -126,12 +119,7 @@ fn quaternion_of(m: &Mat3) -> UnitQuaternion<f64> {
         }
     }
     let quaternion = match largest {
-        0 => Quaternion::new(
-            1.0 + trace,
-            m[(2, 1)] - m[(1, 2)],
-            m[(0, 2)] - m[(2, 0)],
-            m[(1, 0)] - m[(0, 1)],
-        ),
+        0 => Quaternion::new(1.0 + trace, m[(2, 1)] - m[(1, 2)], m[(0, 2)] - m[(2, 0)], m[(1, 0)] - m[(0, 1)]),
         1 => Quaternion::new(
             m[(2, 1)] - m[(1, 2)],
             1.0 + 2.0 * m[(0, 0)] - trace,
@@ -212,10 +200,8 @@ mod tests {
         let step = 1e-6;
         for v in sample_vectors() {
             for axis in [Vec3::x(), Vec3::y(), Vec3::z()] {
-                let numeric_left =
-                    log(&(exp(v + axis * step) * exp(v - axis * step).inverse())) / (2.0 * step);
-                let numeric_right =
-                    log(&(exp(v - axis * step).inverse() * exp(v + axis * step))) / (2.0 * step);
+                let numeric_left = log(&(exp(v + axis * step) * exp(v - axis * step).inverse())) / (2.0 * step);
+                let numeric_right = log(&(exp(v - axis * step).inverse() * exp(v + axis * step))) / (2.0 * step);
                 // Central differences: truncation step², rounding 1e-16/step.
                 assert!((left_jacobian(v) * axis - numeric_left).norm() < 1e-9, "left at {v}");
                 assert!((right_jacobian(v) * axis - numeric_right).norm() < 1e-9, "right at {v}");

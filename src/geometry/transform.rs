@@ -25,10 +25,7 @@ impl<Dst: Frame, Src: Frame> Transform<Dst, Src> {
     /// Declares that `rigid` maps `Src` to `Dst`: the one door from untyped motions.
     #[must_use]
     pub const fn from_rigid(rigid: Rigid) -> Self {
-        Self {
-            rigid,
-            frames: PhantomData,
-        }
+        Self { rigid, frames: PhantomData }
     }
 
     /// From a translation in mm and a rotation.
@@ -108,9 +105,7 @@ mod tests {
             UnitQuaternion::from_euler_angles(0.3, -1.2, 2.9),
         );
         let point_in_flange = Vec3::new(10.0, 20.0, -30.0);
-        let there_and_back = base_from_flange
-            .inverse()
-            .map_point(base_from_flange.map_point(point_in_flange));
+        let there_and_back = base_from_flange.inverse().map_point(base_from_flange.map_point(point_in_flange));
         assert!((there_and_back - point_in_flange).norm() < 1e-12);
     }
 

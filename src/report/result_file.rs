@@ -41,20 +41,14 @@ fn solution_entry(session: &Session, solution: &Solution) -> Value {
     entry.insert("status".to_owned(), json!("ok"));
     entry.insert(names.sensor.to_owned(), transform(&solution.flange_from_sensor));
     entry.insert(names.target.to_owned(), vector(solution.ball_in_base_mm));
-    entry.insert(
-        "scatter_mm".to_owned(),
-        json!({ "rms": solution.scatter.rms_mm, "max": solution.scatter.max_mm }),
-    );
+    entry.insert("scatter_mm".to_owned(), json!({ "rms": solution.scatter.rms_mm, "max": solution.scatter.max_mm }));
     entry.insert(
         "leave_one_out_mm".to_owned(),
         solution
             .leave_one_out
             .map_or(Value::Null, |left_out| json!({ "rms": left_out.rms_mm, "max": left_out.max_mm })),
     );
-    entry.insert(
-        "uncertainty".to_owned(),
-        solution.uncertainty.as_ref().map_or(Value::Null, uncertainty),
-    );
+    entry.insert("uncertainty".to_owned(), solution.uncertainty.as_ref().map_or(Value::Null, uncertainty));
     entry.insert("rotation_span_deg".to_owned(), json!(solution.rotation_span_rad.to_degrees()));
     entry.insert(
         "stations".to_owned(),
@@ -63,11 +57,10 @@ fn solution_entry(session: &Session, solution: &Solution) -> Value {
             .iter()
             .enumerate()
             .map(|(idx, station)| {
-                solution
-                    .stations
-                    .iter()
-                    .find(|used| used.station_idx == idx)
-                    .map_or_else(|| json!({ "label": station.label, "used": false }), |used| station_entry(used, &names))
+                solution.stations.iter().find(|used| used.station_idx == idx).map_or_else(
+                    || json!({ "label": station.label, "used": false }),
+                    |used| station_entry(used, &names),
+                )
             })
             .collect(),
     );
@@ -84,14 +77,8 @@ struct Names {
 impl Names {
     const fn of(mount: Mount) -> Self {
         match mount {
-            Mount::OnFlange => Self {
-                sensor: "flange_from_sensor",
-                target: "target_in_base_mm",
-            },
-            Mount::Fixed => Self {
-                sensor: "base_from_sensor",
-                target: "target_in_flange_mm",
-            },
+            Mount::OnFlange => Self { sensor: "flange_from_sensor", target: "target_in_base_mm" },
+            Mount::Fixed => Self { sensor: "base_from_sensor", target: "target_in_flange_mm" },
         }
     }
 }

@@ -125,10 +125,7 @@ pub fn findings(session: &Session) -> Vec<Finding> {
     if session.stations.is_empty() {
         findings.push(Finding::NoStations);
     } else if num_enabled < MIN_STATIONS {
-        findings.push(Finding::FewStations {
-            num_enabled,
-            needed: MIN_STATIONS,
-        });
+        findings.push(Finding::FewStations { num_enabled, needed: MIN_STATIONS });
     }
     findings.extend(noise_not_given(session));
     for (station_idx, station) in session.stations.iter().enumerate() {
@@ -149,10 +146,7 @@ fn noise_not_given(session: &Session) -> Option<Finding> {
         .flat_map(|station| &station.captures)
         .any(|capture| matches!(capture.reading, Reading::Profile(_)));
     let fields: Vec<&'static str> = [
-        (
-            "sensor.profile_std_mm",
-            has_profiles && session.sensor.profile_std_mm.is_none(),
-        ),
+        ("sensor.profile_std_mm", has_profiles && session.sensor.profile_std_mm.is_none()),
         ("robot.position_std_mm", session.robot.position_std_mm.is_none()),
         ("robot.orientation_std_deg", session.robot.orientation_std_deg.is_none()),
     ]
@@ -163,17 +157,12 @@ fn noise_not_given(session: &Session) -> Option<Finding> {
 }
 
 fn empty_profiles(station: &Station) -> impl Iterator<Item = Finding> + '_ {
-    station
-        .captures
-        .iter()
-        .enumerate()
-        .filter_map(|(capture_idx, capture)| match &capture.reading {
-            Reading::Profile(profile) if profile.valid_points().next().is_none() => Some(Finding::EmptyProfile {
-                label: station.label.clone(),
-                capture_idx,
-            }),
-            _ => None,
-        })
+    station.captures.iter().enumerate().filter_map(|(capture_idx, capture)| match &capture.reading {
+        Reading::Profile(profile) if profile.valid_points().next().is_none() => {
+            Some(Finding::EmptyProfile { label: station.label.clone(), capture_idx })
+        }
+        _ => None,
+    })
 }
 
 fn far_pose(station: &Station) -> Option<Finding> {
@@ -185,11 +174,7 @@ fn far_pose(station: &Station) -> Option<Finding> {
         .map(|(capture_idx, capture)| (capture_idx, distance_mm(capture)))
         .filter(|(_, distance_mm)| *distance_mm > REACH_MM)
         .max_by(|a, b| a.1.total_cmp(&b.1))
-        .map(|(capture_idx, distance_mm)| Finding::FarPose {
-            label: station.label.clone(),
-            capture_idx,
-            distance_mm,
-        })
+        .map(|(capture_idx, distance_mm)| Finding::FarPose { label: station.label.clone(), capture_idx, distance_mm })
 }
 
 fn differing_step(station: &Station) -> Option<Finding> {
@@ -215,12 +200,7 @@ fn differing_step(station: &Station) -> Option<Finding> {
 
 /// Stations after this one with the same pose. For the plate and the point twins are as useless as for the ball.
 fn twins<'s>(station: &'s Station, later: &'s [Station]) -> impl Iterator<Item = Finding> + 's {
-    let first_pose = |station: &Station| {
-        station
-            .captures
-            .first()
-            .map(|capture| *capture.base_from_flange.rigid())
-    };
+    let first_pose = |station: &Station| station.captures.first().map(|capture| *capture.base_from_flange.rigid());
     let pose: Option<Rigid> = first_pose(station);
     later.iter().filter(|other| other.enabled).filter_map(move |other| {
         let (pose, other_pose) = (pose?, first_pose(other)?);
@@ -265,11 +245,7 @@ mod tests {
                 enabled: true,
                 side: crate::calibrate::SideChoice::Auto,
                 edge: None,
-                captures: vec![
-                    capture(0.0, None),
-                    capture(-0.5, Some(-0.5)),
-                    capture(-1.02, Some(-0.5)),
-                ],
+                captures: vec![capture(0.0, None), capture(-0.5, Some(-0.5)), capture(-1.02, Some(-0.5))],
                 unknown: UnknownFields::new(),
             });
         }
@@ -291,21 +267,13 @@ mod tests {
     #[test]
     fn the_session_as_a_whole() {
         check(|session| session.stations.clear(), &[Finding::NoStations]);
-        check(
-            |session| session.stations[2].enabled = false,
-            &[Finding::FewStations {
-                num_enabled: 3,
-                needed: 4,
-            }],
-        );
+        check(|session| session.stations[2].enabled = false, &[Finding::FewStations { num_enabled: 3, needed: 4 }]);
         check(
             |session| {
                 session.robot.position_std_mm = None;
                 session.sensor.profile_std_mm = None;
             },
-            &[Finding::NoiseNotGiven {
-                fields: vec!["sensor.profile_std_mm", "robot.position_std_mm"],
-            }],
+            &[Finding::NoiseNotGiven { fields: vec!["sensor.profile_std_mm", "robot.position_std_mm"] }],
         );
     }
 
@@ -326,10 +294,7 @@ mod tests {
                 make_twin(session);
                 session.stations[3].enabled = false;
             },
-            &[Finding::FewStations {
-                num_enabled: 3,
-                needed: 4,
-            }],
+            &[Finding::FewStations { num_enabled: 3, needed: 4 }],
         );
     }
 
@@ -341,19 +306,11 @@ mod tests {
                 let empty = Profile::new(vec![0.0], &[None]).expect("valid");
                 session.stations[1].captures[2].reading = Reading::Profile(Arc::new(empty));
             },
-            &[Finding::EmptyProfile {
-                label: label(),
-                capture_idx: 2,
-            }],
+            &[Finding::EmptyProfile { label: label(), capture_idx: 2 }],
         );
         check(
             |session| session.stations[1].captures[1].step_mm = Some(-0.75),
-            &[Finding::StepDiffersFromPose {
-                label: label(),
-                capture_idx: 1,
-                step_mm: -0.75,
-                moved_mm: 0.5,
-            }],
+            &[Finding::StepDiffersFromPose { label: label(), capture_idx: 1, step_mm: -0.75, moved_mm: 0.5 }],
         );
         check(
             |session| {
@@ -362,20 +319,13 @@ mod tests {
                 session.stations[1].captures[0].base_from_flange =
                     Transform::from_parts(Vec3::new(0.0, 0.0, 20_000.0), rotation);
             },
-            &[Finding::FarPose {
-                label: label(),
-                capture_idx: 0,
-                distance_mm: 20_000.0,
-            }],
+            &[Finding::FarPose { label: label(), capture_idx: 0, distance_mm: 20_000.0 }],
         );
     }
 
     #[test]
     fn findings_name_their_station_and_a_code() {
-        let finding = Finding::EmptyProfile {
-            label: "7".to_owned(),
-            capture_idx: 0,
-        };
+        let finding = Finding::EmptyProfile { label: "7".to_owned(), capture_idx: 0 };
         assert_eq!((finding.code(), finding.station_label()), ("empty-profile", Some("7")));
     }
 }

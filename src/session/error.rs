@@ -110,9 +110,7 @@ pub enum SessionError {
 /// A file's name or a piece of text on one line: control characters would break the line that names them.
 #[must_use]
 pub(super) fn on_one_line(text: &str) -> String {
-    text.chars()
-        .map(|c| if c.is_control() { '\u{fffd}' } else { c })
-        .collect()
+    text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
 }
 
 #[cfg(test)]

@@ -27,10 +27,7 @@ impl History {
         if self.undo.len() == MAX_STEPS {
             self.undo.remove(0);
         }
-        self.undo.push(Step {
-            label: label.into(),
-            before,
-        });
+        self.undo.push(Step { label: label.into(), before });
     }
 
     /// The session before the last edit, in exchange for the present one.

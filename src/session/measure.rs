@@ -13,7 +13,9 @@ use super::{Reading, Session, Target};
 
 /// Why a session is none for the ball methods.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
-#[error("the session's target is {kind}, not a ball; the ball methods need \"target\": {{\"kind\": \"ball\", \"radius_mm\": …}}")]
+#[error(
+    "the session's target is {kind}, not a ball; the ball methods need \"target\": {{\"kind\": \"ball\", \"radius_mm\": …}}"
+)]
 pub struct NotABallSession {
     /// What the target is.
     pub kind: &'static str,
@@ -50,10 +52,7 @@ pub fn measure(session: &Session, previous: Option<&Measured>, watch: &mut dyn W
         Target::Ball { radius_mm } => radius_mm,
         _ => 0.0,
     };
-    let options = ArcOptions {
-        ball_radius_mm,
-        profile_std_mm: session.sensor.profile_std_mm,
-    };
+    let options = ArcOptions { ball_radius_mm, profile_std_mm: session.sensor.profile_std_mm };
     let previous = previous.filter(|measured| measured.options == options);
     let total = session.num_captures();
     let mut done = 0;
@@ -64,10 +63,9 @@ pub fn measure(session: &Session, previous: Option<&Measured>, watch: &mut dyn W
             watch.report(done, total)?;
             done += 1;
             captures.push(match &capture.reading {
-                Reading::Point(point_in_sensor) => MeasuredCapture {
-                    profile: None,
-                    reading: calibrate::Reading::Point(*point_in_sensor),
-                },
+                Reading::Point(point_in_sensor) => {
+                    MeasuredCapture { profile: None, reading: calibrate::Reading::Point(*point_in_sensor) }
+                }
                 Reading::Profile(profile) => previous
                     .and_then(|measured| measured.stations.get(station_idx)?.get(capture_idx))
                     .filter(|known| known.profile.as_ref().is_some_and(|known| Arc::ptr_eq(known, profile)))
@@ -124,12 +122,7 @@ pub fn ball_problem(session: &Session, measured: &Measured) -> Result<BallProble
                     }
                 })
                 .collect();
-            calibrate::Station {
-                idx,
-                label: station.label.clone(),
-                side: station.side,
-                captures,
-            }
+            calibrate::Station { idx, label: station.label.clone(), side: station.side, captures }
         })
         .collect();
     Ok(BallProblem {

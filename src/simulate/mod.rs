@@ -66,9 +66,7 @@ pub fn simulate(options: &SimulationOptions) -> Session {
             reference_distance_mm: Some(80.0),
             unknown: UnknownFields::new(),
         },
-        target: Target::Ball {
-            radius_mm: options.radius_mm,
-        },
+        target: Target::Ball { radius_mm: options.radius_mm },
         mount: options.mount,
         stations,
         published: None,
@@ -144,11 +142,7 @@ fn station(
 fn reported(true_base_from_flange: &Rigid, options: &SimulationOptions, is_bad: bool, random: &mut Random) -> Rigid {
     let position_error = random.normal3() * options.position_std_mm;
     let orientation_error = random.normal3() * options.orientation_std_deg.to_radians();
-    let shift = if is_bad {
-        Vec3::new(0.48, -0.64, 0.6) * SimulationOptions::BAD_POSE_MM
-    } else {
-        Vec3::zeros()
-    };
+    let shift = if is_bad { Vec3::new(0.48, -0.64, 0.6) * SimulationOptions::BAD_POSE_MM } else { Vec3::zeros() };
     let position = true_base_from_flange.translation.vector + position_error + shift;
     // Without noise the rotation stays as it is, to the bit.
     let rotation = if options.orientation_std_deg > 0.0 {

@@ -4,10 +4,7 @@ use crate::calibrate::Mount;
 
 /// What real profiles hold besides the ball.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[expect(
-    clippy::struct_excessive_bools,
-    reason = "independent switches, any of which may be on"
-)]
+#[expect(clippy::struct_excessive_bools, reason = "independent switches, any of which may be on")]
 pub struct Dirt {
     /// The table below the ball.
     pub has_table: bool,
@@ -23,12 +20,7 @@ impl Dirt {
     /// Everything at once.
     #[must_use]
     pub const fn all() -> Self {
-        Self {
-            has_table: true,
-            has_spikes: true,
-            has_holes: true,
-            has_flank_bias: true,
-        }
+        Self { has_table: true, has_spikes: true, has_holes: true, has_flank_bias: true }
     }
 }
 
@@ -94,12 +86,7 @@ impl SimulationOptions {
     /// Exact data: no noise, unrounded. For tests of accuracy.
     #[must_use]
     pub fn noise_free() -> Self {
-        Self {
-            profile_std_mm: 0.0,
-            position_std_mm: 0.0,
-            orientation_std_deg: 0.0,
-            ..Self::default()
-        }
+        Self { profile_std_mm: 0.0, position_std_mm: 0.0, orientation_std_deg: 0.0, ..Self::default() }
     }
 
     /// Distance of the first section from the ball's centre, mm, before it varies.

@@ -36,11 +36,7 @@ impl Setup {
         // A mounting is never quite square.
         let odd_angles = so3::exp(Vec3::new(0.031, -0.024, 0.017));
         // With z towards the sensor the whole sensor frame is turned about its y.
-        let flip = if options.z_towards_sensor {
-            about(Vec3::y(), PI)
-        } else {
-            UnitQuaternion::identity()
-        };
+        let flip = if options.z_towards_sensor { about(Vec3::y(), PI) } else { UnitQuaternion::identity() };
         let mounting = |turn: UnitQuaternion<f64>| rounded_rotation(&(turn * odd_angles * flip), MOUNTING_DECIMALS);
         match options.mount {
             // Turned about the flange's z, the laser looks along it; straight down the flange is a half turn about x.

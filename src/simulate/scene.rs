@@ -53,12 +53,8 @@ struct Hit {
 impl Scene {
     /// The profile of a sensor standing at `world_from_sensor`.
     pub fn profile(&self, world_from_sensor: &Rigid, noise: &mut Random, dirt: &mut Random) -> Profile {
-        let ball_in_sensor = world_from_sensor
-            .inverse_transform_point(&self.ball_in_world.into())
-            .coords;
-        let x_mm: Vec<f64> = (0..self.num_points)
-            .map(|idx| self.rounded(self.grid_x_mm(idx)))
-            .collect();
+        let ball_in_sensor = world_from_sensor.inverse_transform_point(&self.ball_in_world.into()).coords;
+        let x_mm: Vec<f64> = (0..self.num_points).map(|idx| self.rounded(self.grid_x_mm(idx))).collect();
         let mut z_mm: Vec<Option<f64>> = x_mm
             .iter()
             .map(|x| {
@@ -103,10 +99,8 @@ impl Scene {
             return None;
         }
         let z_mm = self.table_z_mm(x, world_from_sensor)?;
-        ((z_mm - ball_in_sensor.z).abs() <= HALF_RANGE_RADII * self.radius_mm).then_some(Hit {
-            z_mm,
-            incidence_deg: None,
-        })
+        ((z_mm - ball_in_sensor.z).abs() <= HALF_RANGE_RADII * self.radius_mm)
+            .then_some(Hit { z_mm, incidence_deg: None })
     }
 
     fn table_z_mm(&self, x: f64, world_from_sensor: &Rigid) -> Option<f64> {
@@ -122,11 +116,7 @@ impl Scene {
         let steepness = hit.incidence_deg.map_or(0.0, |incidence_deg| {
             ((incidence_deg - BIASED_INCIDENCE_DEG) / (MAX_INCIDENCE_DEG - BIASED_INCIDENCE_DEG)).clamp(0.0, 1.0)
         });
-        if self.dirt.has_flank_bias {
-            -self.range_sign * FLANK_BIAS_MM * steepness * steepness
-        } else {
-            0.0
-        }
+        if self.dirt.has_flank_bias { -self.range_sign * FLANK_BIAS_MM * steepness * steepness } else { 0.0 }
     }
 
     fn rounded(&self, value: f64) -> f64 {
@@ -181,10 +171,7 @@ fn add_holes(z_mm: &mut [Option<f64>], dirt: &mut Random) {
     }
 }
 
-#[expect(
-    clippy::expect_used,
-    reason = "the options' limits keep every point within a profile's"
-)]
+#[expect(clippy::expect_used, reason = "the options' limits keep every point within a profile's")]
 fn checked_profile(x_mm: Vec<f64>, z_mm: &[Option<f64>]) -> Profile {
     Profile::new(x_mm, z_mm).expect("simulated points are finite and within reach")
 }

@@ -30,9 +30,7 @@ fn for_each_offset(session: &Session, mut check: impl FnMut(Vec3)) {
             Mount::Fixed => capture.base_from_flange.rigid().inverse(),
         };
         let world_from_sensor = world_from_carrier * truth.flange_from_sensor.rigid();
-        let Reading::Profile(profile) = &capture.reading else {
-            panic!("a profile")
-        };
+        let Reading::Profile(profile) = &capture.reading else { panic!("a profile") };
         for (_, x, z) in profile.valid_points() {
             check((world_from_sensor * nalgebra::Point3::new(x, 0.0, z)).coords - truth.ball_in_base_mm);
         }
@@ -48,10 +46,7 @@ fn without_noise_every_point_lies_on_the_ball_on_the_side_of_the_sensor() {
             for_each_offset(&session, |offset| {
                 num_points += 1;
                 assert!((offset.norm() - 15.0).abs() < EXACT_MM, "{mount:?}: {}", offset.norm());
-                assert!(
-                    offset.z > -2.0,
-                    "{mount:?}: the sensor looks from above, not at {offset}"
-                );
+                assert!(offset.z > -2.0, "{mount:?}: the sensor looks from above, not at {offset}");
             });
             assert!(num_points > 30 * 40, "{mount:?}: only {num_points} points");
         }
@@ -61,30 +56,18 @@ fn without_noise_every_point_lies_on_the_ball_on_the_side_of_the_sensor() {
 #[test]
 fn the_default_sweep_starts_on_one_side_of_the_ball_and_ends_on_the_other() {
     for mount in [Mount::OnFlange, Mount::Fixed] {
-        let options = SimulationOptions {
-            mount,
-            ..SimulationOptions::noise_free()
-        };
+        let options = SimulationOptions { mount, ..SimulationOptions::noise_free() };
         let setup = Setup::new(&options);
         let mut random = Random::new(options.seed, stream::PATH);
         for station_idx in 0..options.num_stations {
             let path = StationPath::new(&options, &setup, station_idx, &mut random);
-            let ball_y_mm = |num_steps| {
-                path.world_from_sensor(num_steps)
-                    .inverse_transform_point(&setup.ball_in_world.into())
-                    .y
-            };
+            let ball_y_mm =
+                |num_steps| path.world_from_sensor(num_steps).inverse_transform_point(&setup.ball_in_world.into()).y;
             let (first, last) = (ball_y_mm(0), ball_y_mm(options.num_steps - 1));
-            assert!(
-                first * last < 0.0,
-                "station {station_idx} sweeps from {first} to {last}"
-            );
+            assert!(first * last < 0.0, "station {station_idx} sweeps from {first} to {last}");
             // l > 0.5 R means |y| < 0.866 R.
             assert!(first.abs().max(last.abs()) < 0.866 * options.radius_mm);
-            assert!(
-                path.step_mm * first > 0.0,
-                "positive steps bring a ball at positive y nearer"
-            );
+            assert!(path.step_mm * first > 0.0, "positive steps bring a ball at positive y nearer");
         }
     }
 }
@@ -112,20 +95,10 @@ fn the_first_station_points_straight_down_by_an_exact_half_turn() {
 
 #[test]
 fn the_same_seed_gives_the_same_session_and_another_seed_another() {
-    let options = SimulationOptions {
-        num_stations: 3,
-        num_steps: 3,
-        dirt: Dirt::all(),
-        ..SimulationOptions::default()
-    };
+    let options =
+        SimulationOptions { num_stations: 3, num_steps: 3, dirt: Dirt::all(), ..SimulationOptions::default() };
     assert_eq!(simulate(&options), simulate(&options));
-    assert_ne!(
-        simulate(&options),
-        simulate(&SimulationOptions {
-            seed: 2,
-            ..options.clone()
-        })
-    );
+    assert_ne!(simulate(&options), simulate(&SimulationOptions { seed: 2, ..options.clone() }));
 }
 
 #[test]
@@ -151,41 +124,22 @@ fn noise_has_the_size_that_was_asked_for() {
 
 #[test]
 fn dirt_adds_table_spikes_and_holes_but_leaves_most_of_the_arc() {
-    let clean = SimulationOptions {
-        num_stations: 4,
-        num_steps: 2,
-        num_points: 300,
-        ..SimulationOptions::default()
-    };
-    let dirty = SimulationOptions {
-        dirt: Dirt::all(),
-        ..clean.clone()
-    };
+    let clean = SimulationOptions { num_stations: 4, num_steps: 2, num_points: 300, ..SimulationOptions::default() };
+    let dirty = SimulationOptions { dirt: Dirt::all(), ..clean.clone() };
     let (mut on_ball, mut table, mut spikes) = (0, 0, 0);
     for_each_offset(&simulate(&dirty), |offset| match offset.norm() - clean.radius_mm {
         distance if distance.abs() < 0.2 => on_ball += 1,
         _ if (offset.z + 1.8 * clean.radius_mm).abs() < 0.2 => table += 1,
         _ => spikes += 1,
     });
-    assert!(
-        on_ball > 800 && table > 300 && (10..150).contains(&spikes),
-        "{on_ball} {table} {spikes}"
-    );
+    assert!(on_ball > 800 && table > 300 && (10..150).contains(&spikes), "{on_ball} {table} {spikes}");
 }
 
 #[test]
 fn a_bad_pose_is_that_of_one_station_only() {
     let good = small(Mount::OnFlange, false);
-    let bad = SimulationOptions {
-        bad_pose_station: Some(3),
-        ..good.clone()
-    };
-    for (idx, (a, b)) in simulate(&good)
-        .stations
-        .iter()
-        .zip(&simulate(&bad).stations)
-        .enumerate()
-    {
+    let bad = SimulationOptions { bad_pose_station: Some(3), ..good.clone() };
+    for (idx, (a, b)) in simulate(&good).stations.iter().zip(&simulate(&bad).stations).enumerate() {
         let shift = a.captures[0].base_from_flange.translation_mm() - b.captures[0].base_from_flange.translation_mm();
         let expected = if idx == 3 { SimulationOptions::BAD_POSE_MM } else { 0.0 };
         assert!((shift.norm() - expected).abs() < EXACT_MM);

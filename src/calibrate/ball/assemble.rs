@@ -64,13 +64,7 @@ impl Found<'_> {
         let balls_in_sensor: Vec<Vec3> = first_poses
             .iter()
             .zip(&balls_in_base)
-            .map(|(pose, ball_in_base)| {
-                State {
-                    ball_in_base: *ball_in_base,
-                    ..state
-                }
-                .ball_in_sensor(pose)
-            })
+            .map(|(pose, ball_in_base)| State { ball_in_base: *ball_in_base, ..state }.ball_in_sensor(pose))
             .collect();
         let uncertainty = self.variance_factor.map(|factor| {
             let covariance = sensor_block(&unit_covariance) * factor;
@@ -102,10 +96,7 @@ impl Found<'_> {
             flange_from_sensor: Transform::from_rigid(state.flange_from_sensor),
             ball_in_base_mm: state.ball_in_base,
             scatter: rms_max(balls_in_base.iter().map(|ball| (ball - state.ball_in_base).norm())),
-            leave_one_out: left_out
-                .iter()
-                .all(Option::is_some)
-                .then(|| rms_max(left_out.iter().copied().flatten())),
+            leave_one_out: left_out.iter().all(Option::is_some).then(|| rms_max(left_out.iter().copied().flatten())),
             uncertainty,
             stations,
             rotation_span_rad: span,
@@ -136,10 +127,7 @@ impl Found<'_> {
     fn add_shared_warnings(&mut self, span_rad: f64, left_out: &[Option<f64>], in_sample: &[f64]) {
         let num_stations = self.stations.len();
         if num_stations < super::super::validation::MIN_STATIONS {
-            self.warnings.push(Warning::FewStations {
-                num_stations,
-                recommended: RECOMMENDED_STATIONS,
-            });
+            self.warnings.push(Warning::FewStations { num_stations, recommended: RECOMMENDED_STATIONS });
         }
         if span_rad.to_degrees() < RECOMMENDED_SPAN_DEG {
             self.warnings.push(Warning::LittleRotation {
@@ -150,15 +138,11 @@ impl Found<'_> {
         let [least, _, most] = self.poses.rotation_about_axes;
         let ratio = (most / least).sqrt();
         if ratio > ONE_AXIS_RATIO {
-            self.warnings.push(Warning::NearlyOneAxis {
-                ratio,
-                weak_axis_in_flange: self.poses.weakest_axis_in_flange.into(),
-            });
+            self.warnings
+                .push(Warning::NearlyOneAxis { ratio, weak_axis_in_flange: self.poses.weakest_axis_in_flange.into() });
         }
         if !self.minimum.converged {
-            self.warnings.push(Warning::NotConverged {
-                num_iterations: self.minimum.num_iterations,
-            });
+            self.warnings.push(Warning::NotConverged { num_iterations: self.minimum.num_iterations });
         }
         if let Some((station, error_mm, typical_mm)) = stands_out(left_out, in_sample) {
             self.warnings.push(Warning::StationStandsOut {
@@ -176,10 +160,7 @@ pub(super) fn first_pose(station: &Station) -> &Rigid {
 }
 
 fn rms_max(distances: impl Iterator<Item = f64> + Clone) -> RmsMax {
-    RmsMax {
-        rms_mm: stats::rms(distances.clone()),
-        max_mm: stats::max(distances),
-    }
+    RmsMax { rms_mm: stats::rms(distances.clone()), max_mm: stats::max(distances) }
 }
 
 /// The station with the largest left-out error, if that is far above the others' and its residual is as well: a large

@@ -44,16 +44,10 @@ pub fn solve(problem: &BallProblem) -> Result<Solution, SolveError> {
     let start = start(problem, &mut warnings)?;
     let profiles = used_profiles(&stations, problem.radius_mm);
     let settled = settle(|state| linearised(&profiles, state, problem.radius_mm), &problem.noise, start)?;
-    let variance_factor =
-        station_variance_factor(&settled.observations, &settled.minimum.state, stations.len());
+    let variance_factor = station_variance_factor(&settled.observations, &settled.minimum.state, stations.len());
     let facts = stations
         .into_iter()
-        .map(|station| StationFacts {
-            station,
-            side_cost_ratio: None,
-            ball_in_sensor_std_mm: None,
-            sweep: None,
-        })
+        .map(|station| StationFacts { station, side_cost_ratio: None, ball_in_sensor_std_mm: None, sweep: None })
         .collect();
     Found {
         method: Method::BallBundle,
@@ -78,10 +72,7 @@ fn stations_with_profiles<'a>(
     let (used, skipped): (Vec<&Station>, Vec<&Station>) =
         problem.stations.iter().partition(|station| station.captures.iter().any(|capture| is_arc(&capture.reading)));
     if used.len() < MIN_STATIONS {
-        return Err(SolveError::TooFewProfileStations {
-            found: used.len(),
-            needed: MIN_STATIONS,
-        });
+        return Err(SolveError::TooFewProfileStations { found: used.len(), needed: MIN_STATIONS });
     }
     warnings.extend(skipped.into_iter().map(|station| Warning::StationSkipped {
         label: station.label.clone(),
@@ -128,12 +119,7 @@ fn used_profiles<'a>(stations: &[&'a Station], ball_radius_mm: f64) -> Vec<UsedP
         .map(|(station, base_from_flange, arc)| {
             // Noise in the laser plane acts on |p − s| with the factor l/R.
             let section_part = (arc.circle.radius_mm / ball_radius_mm).min(1.0);
-            UsedProfile {
-                station,
-                base_from_flange,
-                arc,
-                weight: (section_part * point_std_mm).powi(-2),
-            }
+            UsedProfile { station, base_from_flange, arc, weight: (section_part * point_std_mm).powi(-2) }
         })
         .collect()
 }

@@ -23,10 +23,7 @@ pub(super) struct CurveFit {
 
 /// Pose of the sensor at a step in the sensor frame of the first capture.
 fn first_from_step(sweep: &StationSweep<'_>, step: usize, flange_from_sensor: &Rigid) -> Rigid {
-    flange_from_sensor.inverse()
-        * sweep.first_pose.inverse()
-        * sweep.steps[step].base_from_flange
-        * flange_from_sensor
+    flange_from_sensor.inverse() * sweep.first_pose.inverse() * sweep.steps[step].base_from_flange * flange_from_sensor
 }
 
 /// What a section lacks to be explained by a ball at `predicted` (its own sensor frame), and the derivative by it.
@@ -77,10 +74,7 @@ pub(super) fn fit_curve(
             break;
         }
     }
-    ball_in_sensor.iter().all(|v| v.is_finite()).then_some(CurveFit {
-        ball_in_sensor,
-        covariance,
-    })
+    ball_in_sensor.iter().all(|v| v.is_finite()).then_some(CurveFit { ball_in_sensor, covariance })
 }
 
 /// Covariance of (x, z, l) by the noise of the points and of the pose.
@@ -115,12 +109,8 @@ fn curve_start(problem: &BallProblem, sweep: &StationSweep<'_>, frames: &[Rigid]
     #[expect(clippy::cast_precision_loss, reason = "a sweep has few steps")]
     let scale = 1.0 / travel.len() as f64;
     let mean = travel.iter().sum::<f64>() * scale;
-    let squares: Vec<f64> = sweep
-        .steps
-        .iter()
-        .zip(&travel)
-        .map(|(step, m)| step.arc.circle.radius_mm.powi(2) + m * m)
-        .collect();
+    let squares: Vec<f64> =
+        sweep.steps.iter().zip(&travel).map(|(step, m)| step.arc.circle.radius_mm.powi(2) + m * m).collect();
     let mean_square = squares.iter().sum::<f64>() * scale;
     let (mut cross, mut spread) = (0.0, 0.0);
     for (m, square) in travel.iter().zip(&squares) {
@@ -187,4 +177,3 @@ fn station_travel_angle(sweep: &StationSweep<'_>, laser_normal_in_flange: Vec3) 
     let travel = travel_direction(std::slice::from_ref(sweep));
     travel.cross(&laser_normal_in_flange).norm().atan2(travel.dot(&laser_normal_in_flange).abs())
 }
-

@@ -47,20 +47,14 @@ pub(super) fn find(problem: &BallProblem) -> Result<Found<'_>, SolveError> {
     let sections: Vec<Section<'_>> =
         problem.stations.iter().filter_map(|station| section(problem, station, &mut warnings)).collect();
     if sections.len() < MIN_STATIONS {
-        return Err(SolveError::TooFewStations {
-            found: sections.len(),
-            needed: MIN_STATIONS,
-        });
+        return Err(SolveError::TooFewStations { found: sections.len(), needed: MIN_STATIONS });
     }
     let base_from_flange: Vec<Rigid> = sections.iter().map(|section| *first_pose(section.station)).collect();
     let candidates: Vec<SideCandidate> = sections.iter().map(|section| section.candidate).collect();
     let poses = PoseGeometry::new(&base_from_flange)?;
     let resolved = resolve_sides(&poses, &base_from_flange, &candidates);
-    let centres: Vec<Vec3> = candidates
-        .iter()
-        .zip(&resolved.sides)
-        .map(|(candidate, side)| candidate.centre(*side))
-        .collect();
+    let centres: Vec<Vec3> =
+        candidates.iter().zip(&resolved.sides).map(|(candidate, side)| candidate.centre(*side)).collect();
     let start = poses.reduced(&centres).state(resolved.minimum.flange_from_sensor);
     let observations: Vec<CentreObservation> = base_from_flange
         .iter()
@@ -184,10 +178,7 @@ fn add_blind_warning(sections: &[Section<'_>], warnings: &mut Vec<Warning>) {
 }
 
 /// Mean square residual a degree of freedom, for unit-weight points, mm²; `None` if nothing is left over.
-pub(super) fn mean_square_residual(
-    observations: &[CentreObservation],
-    state: &State,
-) -> Option<f64> {
+pub(super) fn mean_square_residual(observations: &[CentreObservation], state: &State) -> Option<f64> {
     let cost: f64 = observations
         .iter()
         .map(|observation| {

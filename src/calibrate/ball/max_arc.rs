@@ -13,10 +13,10 @@ use crate::geometry::{Rigid, stats};
 
 use super::assemble::{Found, StationFacts};
 use super::curve::{evaluated_sweep, fit_curve, section_observation, section_residual};
-use super::{fixed_point, max_arc_step};
 use super::passes::{Settled, settle};
 use super::pose_noise::station_variance_factor;
 use super::sweep::{StationSweep, step_warning, sweeps, travel_direction};
+use super::{fixed_point, max_arc_step};
 
 /// Travel may differ from the laser's normal by this, degrees, before the published method suffers visibly.
 const OFF_NORMAL_DEG: f64 = 1.0;
@@ -47,7 +47,8 @@ fn find(problem: &BallProblem) -> Result<Found<'_>, SolveError> {
     let stations = sweeps
         .iter()
         .map(|sweep| {
-            let curve = fit_curve(problem, sweep, &state, found.pose_noise.position_std_mm).ok_or(SolveError::Diverged)?;
+            let curve =
+                fit_curve(problem, sweep, &state, found.pose_noise.position_std_mm).ok_or(SolveError::Diverged)?;
             Ok(StationFacts {
                 station: sweep.station,
                 side_cost_ratio: None,
@@ -127,21 +128,12 @@ fn add_sweep_warnings(stations: &[StationFacts<'_>], warnings: &mut Vec<Warning>
             most_off_normal = Some((&facts.station.label, angle_deg));
         }
         if !sweep.covers_peak {
-            let beyond_mm = sweep
-                .points
-                .iter()
-                .map(|point| (point.travel_mm - sweep.peak_mm).abs())
-                .fold(f64::INFINITY, f64::min);
-            warnings.push(Warning::PeakNotCovered {
-                label: facts.station.label.clone(),
-                beyond_mm,
-            });
+            let beyond_mm =
+                sweep.points.iter().map(|point| (point.travel_mm - sweep.peak_mm).abs()).fold(f64::INFINITY, f64::min);
+            warnings.push(Warning::PeakNotCovered { label: facts.station.label.clone(), beyond_mm });
         }
     }
     if let Some((label, angle_deg)) = most_off_normal {
-        warnings.push(Warning::TravelOffNormal {
-            label: label.to_owned(),
-            angle_deg,
-        });
+        warnings.push(Warning::TravelOffNormal { label: label.to_owned(), angle_deg });
     }
 }

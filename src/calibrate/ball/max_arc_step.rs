@@ -17,9 +17,9 @@ use super::sweep::{StationSweep, step_warning, sweeps, travel_direction};
 /// Where the published search stops: at the first section with l ≥ R, or, as with noise it may never come, at the largest.
 pub(super) fn published_stop(sweep: &StationSweep<'_>, ball_radius_mm: f64) -> usize {
     let radius = |idx: usize| sweep.steps[idx].arc.circle.radius_mm;
-    (0..sweep.steps.len()).find(|idx| radius(*idx) >= ball_radius_mm).unwrap_or_else(|| {
-        (0..sweep.steps.len()).max_by(|a, b| radius(*a).total_cmp(&radius(*b))).unwrap_or(0)
-    })
+    (0..sweep.steps.len())
+        .find(|idx| radius(*idx) >= ball_radius_mm)
+        .unwrap_or_else(|| (0..sweep.steps.len()).max_by(|a, b| radius(*a).total_cmp(&radius(*b))).unwrap_or(0))
 }
 
 /// n·d: the commanded travel to a step, or, where it is not recorded, the travel of the poses along the common direction.

@@ -54,11 +54,7 @@ pub(super) fn settle(
         let settled = moved_mm < SETTLED_MM && (stated.is_some() || pass > LAST_NOISE_ESTIMATE);
         minimum.converged &= moved_mm < CONVERGED_MM;
         minimum.num_iterations = pass;
-        latest = Some(Settled {
-            observations,
-            minimum,
-            pose_noise,
-        });
+        latest = Some(Settled { observations, minimum, pose_noise });
         if settled {
             break;
         }

@@ -17,10 +17,7 @@ pub(super) struct PoseNoise {
 
 impl PoseNoise {
     /// A perfect robot.
-    pub const NONE: Self = Self {
-        position_std_mm: 0.0,
-        orientation_std_rad: 0.0,
-    };
+    pub const NONE: Self = Self { position_std_mm: 0.0, orientation_std_rad: 0.0 };
 
     /// The noise that the user states, if any.
     pub fn stated(noise: &Noise) -> Option<Self> {
@@ -40,10 +37,7 @@ impl PoseNoise {
         const LEAST_MM: f64 = 1e-6;
         /// Worse than this is no noise, mm.
         const MOST_MM: f64 = 30.0;
-        let noise = |position_std_mm: f64| Self {
-            position_std_mm,
-            orientation_std_rad: 0.0,
-        };
+        let noise = |position_std_mm: f64| Self { position_std_mm, orientation_std_rad: 0.0 };
         // With S = τ² I every direction of a profile stands alone: eᵀ (W⁻¹ + S)⁻¹ e is Σ (vᵀ g)² / (λ + τ² λ²) over the
         // eigenvectors v of W, with e = W⁻¹ g.
         let directions: Vec<(f64, f64)> = observations
@@ -86,8 +80,7 @@ impl PoseNoise {
     /// The orientation acts with the lever from the flange to the ball.
     fn centre_covariance(&self, observation: &CentreObservation, state: &State) -> Mat3 {
         let position = Mat3::identity() * (self.position_std_mm * self.position_std_mm);
-        let ball_in_flange =
-            observation.base_from_flange.inverse_transform_point(&state.ball_in_base.into()).coords;
+        let ball_in_flange = observation.base_from_flange.inverse_transform_point(&state.ball_in_base.into()).coords;
         let rotation = state.flange_from_sensor.rotation.to_rotation_matrix();
         let lever = rotation.matrix().transpose() * hat(ball_in_flange);
         position + lever * lever.transpose() * (self.orientation_std_rad * self.orientation_std_rad)
@@ -104,9 +97,7 @@ pub(super) fn marginalised(
     noise: &PoseNoise,
 ) -> Result<CentreObservation, SolveError> {
     let covariance = noise.centre_covariance(observation, state);
-    let damp = (Mat3::identity() + observation.information * covariance)
-        .try_inverse()
-        .ok_or(SolveError::Diverged)?;
+    let damp = (Mat3::identity() + observation.information * covariance).try_inverse().ok_or(SolveError::Diverged)?;
     let information = damp * observation.information;
     Ok(CentreObservation {
         information: (information + information.transpose()) * 0.5,

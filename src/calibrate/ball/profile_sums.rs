@@ -23,10 +23,7 @@ pub(super) fn profile_sums(arc: &ArcFit, centre: Vec3, ball_radius_mm: f64) -> P
     let [uu, uw, ww, u_inverse, w_inverse, inverse_squared, ur, wr, inverse_r] = sums;
     let y = -centre.y;
     let (uv, vw, vv, vr) = (y * u_inverse, y * w_inverse, y * y * inverse_squared, y * inverse_r);
-    ProfileSums {
-        information: Mat3::new(uu, uv, uw, uv, vv, vw, uw, vw, ww),
-        pull: Vec3::new(ur, vr, wr),
-    }
+    ProfileSums { information: Mat3::new(uu, uv, uw, uv, vv, vw, uw, vw, ww), pull: Vec3::new(ur, vr, wr) }
 }
 
 #[inline]
@@ -35,15 +32,5 @@ fn terms(dx: f64, dz: f64, y: f64, ball_radius_mm: f64) -> [f64; 9] {
     let inverse = 1.0 / squared.sqrt();
     let residual = squared * inverse - ball_radius_mm;
     let (u, w) = (dx * inverse, dz * inverse);
-    [
-        u * u,
-        u * w,
-        w * w,
-        u * inverse,
-        w * inverse,
-        inverse * inverse,
-        u * residual,
-        w * residual,
-        inverse * residual,
-    ]
+    [u * u, u * w, w * w, u * inverse, w * inverse, inverse * inverse, u * residual, w * residual, inverse * residual]
 }

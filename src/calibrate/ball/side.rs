@@ -76,11 +76,7 @@ pub(super) fn resolve_sides(
     base_from_flange: &[Rigid],
     candidates: &[SideCandidate],
 ) -> ResolvedSides {
-    let resolver = Resolver {
-        poses,
-        base_from_flange,
-        candidates,
-    };
+    let resolver = Resolver { poses, base_from_flange, candidates };
     let mut finals: Vec<Assignment> = Vec::new();
     for global in [Side::Plus, Side::Minus] {
         let sides: Vec<Side> = candidates
@@ -109,11 +105,7 @@ pub(super) fn resolve_sides(
     let others = finals.split_off(1);
     let best = finals.swap_remove(0);
     let cost_ratios = resolver.cost_ratios(&best, &others);
-    ResolvedSides {
-        sides: best.sides,
-        cost_ratios,
-        minimum: best.minimum,
-    }
+    ResolvedSides { sides: best.sides, cost_ratios, minimum: best.minimum }
 }
 
 impl Resolver<'_> {
@@ -156,10 +148,8 @@ impl Resolver<'_> {
                     .zip(self.base_from_flange)
                     .map(|(candidate, pose)| candidate.side_of(found.state.ball_in_sensor(pose).y))
                     .collect();
-                let minimum = self
-                    .poses
-                    .reduced(&self.centres(&sides))
-                    .descend(found.state.flange_from_sensor.rotation);
+                let minimum =
+                    self.poses.reduced(&self.centres(&sides)).descend(found.state.flange_from_sensor.rotation);
                 Assignment { sides, minimum }
             })
             .collect()
@@ -215,7 +205,8 @@ impl Resolver<'_> {
             return assignment;
         }
         loop {
-            let pairs = open.iter().enumerate().flat_map(|(at, first)| open[at + 1..].iter().map(|second| (*first, *second)));
+            let pairs =
+                open.iter().enumerate().flat_map(|(at, first)| open[at + 1..].iter().map(|second| (*first, *second)));
             let best = pairs
                 .map(|(first, second)| self.flipped(&self.flipped(&assignment, first), second))
                 .min_by(|a, b| a.minimum.cost.total_cmp(&b.minimum.cost));

@@ -50,11 +50,7 @@ pub(super) fn sweeps<'a>(
         let travels = steps.iter().any(|step| step.travel_in_flange.norm() > MIN_TRAVEL_MM);
         if steps.len() >= MIN_STEPS && travels {
             skipped.extend(refused(station));
-            sweeps.push(StationSweep {
-                station,
-                first_pose: station.captures[0].base_from_flange.rigid(),
-                steps,
-            });
+            sweeps.push(StationSweep { station, first_pose: station.captures[0].base_from_flange.rigid(), steps });
         } else {
             skipped.push(Warning::StationSkipped {
                 label: station.label.clone(),
@@ -64,11 +60,7 @@ pub(super) fn sweeps<'a>(
         }
     }
     if sweeps.len() < MIN_STATIONS {
-        return Err(SolveError::TooFewSweeps {
-            found: sweeps.len(),
-            needed: MIN_STATIONS,
-            steps: MIN_STEPS,
-        });
+        return Err(SolveError::TooFewSweeps { found: sweeps.len(), needed: MIN_STATIONS, steps: MIN_STEPS });
     }
     warnings.append(&mut skipped);
     Ok(sweeps)
@@ -110,11 +102,9 @@ fn steps(station: &Station) -> Vec<SweepStep<'_>> {
 /// One warning for the first profile of a sweep that was refused.
 fn refused(station: &Station) -> Option<Warning> {
     station.captures.iter().enumerate().find_map(|(capture_idx, capture)| match &capture.reading {
-        Reading::Refused(reason) => Some(Warning::CaptureRefused {
-            label: station.label.clone(),
-            capture_idx,
-            reason: reason.clone(),
-        }),
+        Reading::Refused(reason) => {
+            Some(Warning::CaptureRefused { label: station.label.clone(), capture_idx, reason: reason.clone() })
+        }
         Reading::Arc(_) | Reading::Point(_) => None,
     })
 }
@@ -125,9 +115,8 @@ pub(super) fn travel_direction(sweeps: &[StationSweep<'_>]) -> Vec3 {
     let spread: Mat3 = steps().map(|step| step.travel_in_flange * step.travel_in_flange.transpose()).sum();
     let eigen = spread.symmetric_eigen();
     let direction = eigen.eigenvectors.column(eigen.eigenvalues.imax()).into_owned();
-    let agreement: f64 = steps()
-        .map(|step| step.commanded_mm.unwrap_or(0.0) * direction.dot(&step.travel_in_flange))
-        .sum();
+    let agreement: f64 =
+        steps().map(|step| step.commanded_mm.unwrap_or(0.0) * direction.dot(&step.travel_in_flange)).sum();
     if agreement < 0.0 { -direction } else { direction }
 }
 
@@ -147,10 +136,8 @@ pub(super) fn step_warning(sweeps: &[StationSweep<'_>], direction: Vec3) -> Opti
             #[expect(clippy::cast_precision_loss, reason = "a sweep has few steps")]
             let mean_step_mm = extent_mm / sweep.steps.len() as f64;
             let tolerance_mm = STEP_TOLERANCE_MM.max(STEP_TOLERANCE_PART * mean_step_mm);
-            (difference_mm > tolerance_mm).then(|| Warning::StepDiffersFromPose {
-                label: sweep.station.label.clone(),
-                difference_mm,
-            })
+            (difference_mm > tolerance_mm)
+                .then(|| Warning::StepDiffersFromPose { label: sweep.station.label.clone(), difference_mm })
         })
         .max_by(|a, b| match (a, b) {
             (

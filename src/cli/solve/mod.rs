@@ -50,11 +50,7 @@ struct TerminalProgress {
 
 impl TerminalProgress {
     fn new(what: &'static str) -> Self {
-        Self {
-            what,
-            is_terminal: std::io::stderr().is_terminal(),
-            shown: false,
-        }
+        Self { what, is_terminal: std::io::stderr().is_terminal(), shown: false }
     }
 
     fn clear(&mut self) {
@@ -81,8 +77,7 @@ pub fn run(args: &SolveArgs) -> ExitCode {
         Ok(session) => session,
         Err(error) => return fail(EXIT_WRONG_INPUT, &error),
     };
-    let methods: Vec<Method> =
-        if args.methods.is_empty() { Method::ALL.to_vec() } else { args.methods.clone() };
+    let methods: Vec<Method> = if args.methods.is_empty() { Method::ALL.to_vec() } else { args.methods.clone() };
     let mut progress = TerminalProgress::new("reading profiles");
     let measured = measure(&session, None, &mut progress);
     progress.clear();

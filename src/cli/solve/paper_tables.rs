@@ -36,8 +36,7 @@ fn method_table(out: &mut String, session: &Session, solution: &Solution) {
     .ok();
     writeln!(out, "{HEAD}").ok();
     for station in &solution.stations {
-        let Some(capture) =
-            session.stations.get(station.station_idx).and_then(|recorded| recorded.captures.first())
+        let Some(capture) = session.stations.get(station.station_idx).and_then(|recorded| recorded.captures.first())
         else {
             continue;
         };
@@ -76,13 +75,13 @@ fn published_table(out: &mut String, session: &Session) {
         return;
     }
     let caption = if published.caption.is_empty() { "As published" } else { &published.caption };
-    writeln!(out, "{caption} · printed ball in base/mm · printed error/mm · error recomputed from the printed centres/mm")
-        .ok();
     writeln!(
         out,
-        "No.         xb        yb        zb | printed x        y        z | recomp. x        y        z"
+        "{caption} · printed ball in base/mm · printed error/mm · error recomputed from the printed centres/mm"
     )
     .ok();
+    writeln!(out, "No.         xb        yb        zb | printed x        y        z | recomp. x        y        z")
+        .ok();
     let mut misprints = Vec::new();
     for (idx, row) in rows.iter().enumerate() {
         let label = session.stations.get(idx).map_or("", |station| station.label.as_str());

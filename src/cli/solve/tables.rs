@@ -30,8 +30,13 @@ pub fn tables(session: &Session, problem: &BallProblem, results: &[MethodResult]
         match &result.outcome {
             Ok(solution) => method_section(&mut out, session, solution),
             Err(error) => {
-                writeln!(out, "\n{} ({})\n  not computed: {error}", text::method_name(result.method), result.method.id())
-                    .ok();
+                writeln!(
+                    out,
+                    "\n{} ({})\n  not computed: {error}",
+                    text::method_name(result.method),
+                    result.method.id()
+                )
+                .ok();
             }
         }
     }
@@ -43,7 +48,11 @@ fn overview(out: &mut String, session: &Session, results: &[MethodResult]) {
     writeln!(
         out,
         "{:<28} {:>9} {:>9} {:>9} {:>9}{}",
-        "errors in mm", "max", "RMS", "left out", "σ point",
+        "errors in mm",
+        "max",
+        "RMS",
+        "left out",
+        "σ point",
         if has_truth { "   from truth" } else { "" }
     )
     .ok();
@@ -124,14 +133,8 @@ fn method_section(out: &mut String, session: &Session, solution: &Solution) {
         .ok();
     }
     for warning in &solution.warnings {
-        writeln!(
-            out,
-            "  ! [{}] {} {}",
-            warning.code(),
-            text::warning_message(warning),
-            text::warning_remedy(warning)
-        )
-        .ok();
+        writeln!(out, "  ! [{}] {} {}", warning.code(), text::warning_message(warning), text::warning_remedy(warning))
+            .ok();
     }
 }
 
@@ -155,8 +158,7 @@ fn calibration(out: &mut String, session: &Session, solution: &Solution) {
         }
         out.push_str(if axis < 2 { ", " } else { " mm\n" });
     }
-    let angles_std =
-        uncertainty.map(|known| convention.angles_std_deg(&rotation, &known.rotation_covariance()));
+    let angles_std = uncertainty.map(|known| convention.angles_std_deg(&rotation, &known.rotation_covariance()));
     write!(out, "  {:>width$}  ", "", width = name.len()).ok();
     for axis in 0..3 {
         let std = angles_std.map(|std| std[axis]);

@@ -45,10 +45,7 @@ pub(super) struct Cursor<'a> {
 
 impl<'a> Cursor<'a> {
     pub fn root(node: &'a Node) -> Self {
-        Self {
-            node: Cow::Borrowed(node),
-            path: String::new(),
-        }
+        Self { node: Cow::Borrowed(node), path: String::new() }
     }
 
     pub fn path(&self) -> &str {
@@ -63,11 +60,7 @@ impl<'a> Cursor<'a> {
     /// A refusal of this value for a reason that its own text does not show.
     pub fn refuse_as(&self, found: impl Into<String>, expected: impl Into<String>) -> Refusal {
         Refusal {
-            path: if self.path.is_empty() {
-                "top level".to_owned()
-            } else {
-                self.path.clone()
-            },
+            path: if self.path.is_empty() { "top level".to_owned() } else { self.path.clone() },
             found: found.into(),
             expected: expected.into(),
         }
@@ -75,36 +68,23 @@ impl<'a> Cursor<'a> {
 
     /// A refusal of one element of this list.
     pub fn refuse_element(&self, index: usize, found: impl Into<String>, expected: impl Into<String>) -> Refusal {
-        Refusal {
-            path: format!("{}[{index}]", self.path),
-            found: found.into(),
-            expected: expected.into(),
-        }
+        Refusal { path: format!("{}[{index}]", self.path), found: found.into(), expected: expected.into() }
     }
 
     pub fn object(&self, expected: &str) -> Result<Object<'_>, Refusal> {
         match &*self.node {
-            Node::Object(fields) => Ok(Object {
-                fields,
-                path: self.path.clone(),
-            }),
+            Node::Object(fields) => Ok(Object { fields, path: self.path.clone() }),
             _ => Err(self.refuse(expected)),
         }
     }
 
     pub fn elements(&self, expected: &str) -> Result<Vec<Cursor<'_>>, Refusal> {
-        let element = |(index, node)| Cursor {
-            node,
-            path: format!("{}[{index}]", self.path),
-        };
+        let element = |(index, node)| Cursor { node, path: format!("{}[{index}]", self.path) };
         match &*self.node {
             Node::List(nodes) => Ok(nodes.iter().map(Cow::Borrowed).enumerate().map(element).collect()),
-            Node::Numbers(numbers) => Ok(numbers
-                .iter()
-                .map(|number| Cow::Owned(node_of(*number)))
-                .enumerate()
-                .map(element)
-                .collect()),
+            Node::Numbers(numbers) => {
+                Ok(numbers.iter().map(|number| Cow::Owned(node_of(*number))).enumerate().map(element).collect())
+            }
             _ => Err(self.refuse(expected)),
         }
     }
@@ -133,10 +113,9 @@ impl<'a> Cursor<'a> {
 
     pub fn number(&self, quantity: &Quantity) -> Result<f64, Refusal> {
         match &*self.node {
-            Node::Number(number) => number
-                .as_f64()
-                .filter(|value| quantity.admits(*value))
-                .ok_or_else(|| self.refuse(quantity.to_string())),
+            Node::Number(number) => {
+                number.as_f64().filter(|value| quantity.admits(*value)).ok_or_else(|| self.refuse(quantity.to_string()))
+            }
             _ => Err(self.refuse(quantity.to_string())),
         }
     }
@@ -152,11 +131,7 @@ impl<'a> Cursor<'a> {
                     .position(|node| is_stranger(node) && !matches!(node, Node::Null | Node::Number(_)))
                     .or_else(|| nodes.iter().position(is_stranger))
                     .unwrap_or(0);
-                Err(self.refuse_element(
-                    index,
-                    nodes.get(index).map_or_else(String::new, Node::described),
-                    expected,
-                ))
+                Err(self.refuse_element(index, nodes.get(index).map_or_else(String::new, Node::described), expected))
             }
             _ => Err(self.refuse(expected)),
         }
@@ -208,21 +183,14 @@ pub(super) struct Object<'a> {
 
 impl<'a> Object<'a> {
     pub fn path_of(&self, name: &str) -> String {
-        if self.path.is_empty() {
-            name.to_owned()
-        } else {
-            format!("{}.{name}", self.path)
-        }
+        if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
     }
 
     pub fn optional(&self, name: &str) -> Option<Cursor<'a>> {
         self.fields
             .iter()
             .find(|(key, node)| key == name && *node != Node::Null)
-            .map(|(_, node)| Cursor {
-                node: Cow::Borrowed(node),
-                path: self.path_of(name),
-            })
+            .map(|(_, node)| Cursor { node: Cow::Borrowed(node), path: self.path_of(name) })
     }
 
     /// A field that must be there; `expected` says what it would hold.
@@ -236,8 +204,7 @@ impl<'a> Object<'a> {
 
     /// Text, empty where the field is absent.
     pub fn text_or_empty(&self, name: &str) -> Result<String, Refusal> {
-        self.optional(name)
-            .map_or_else(|| Ok(String::new()), |cursor| cursor.text("text").map(str::to_owned))
+        self.optional(name).map_or_else(|| Ok(String::new()), |cursor| cursor.text("text").map(str::to_owned))
     }
 
     /// A number, if the field is there.

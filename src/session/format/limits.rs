@@ -9,48 +9,14 @@ pub(super) const QUATERNION_NORM_NOTED: f64 = 1e-6;
 /// Off unit norm by less, a quaternion is kept to the bit, so that saving and loading change nothing.
 pub(super) const QUATERNION_NORM_EXACT: f64 = 4.0 * f64::EPSILON;
 
-pub(super) const BALL_RADIUS_MM: Quantity = Quantity {
-    what: "a ball's radius in mm",
-    min: 1e-3,
-    max: 1e4,
-};
-pub(super) const LENGTH_STD_MM: Quantity = Quantity {
-    what: "a standard deviation in mm (left out where it is not known)",
-    min: 1e-6,
-    max: 100.0,
-};
-pub(super) const ORIENTATION_STD_DEG: Quantity = Quantity {
-    what: "a standard deviation in degrees (left out where it is not known)",
-    min: 1e-6,
-    max: 90.0,
-};
-pub(super) const REFERENCE_DISTANCE_MM: Quantity = Quantity {
-    what: "a distance in mm",
-    min: 1e-3,
-    max: 1e5,
-};
-pub(super) const POSITION_MM: Quantity = Quantity {
-    what: "a position in mm",
-    min: -1e6,
-    max: 1e6,
-};
-pub(super) const POINT_MM: Quantity = Quantity {
-    what: "a coordinate in mm",
-    min: -1e5,
-    max: 1e5,
-};
-pub(super) const STEP_MM: Quantity = Quantity {
-    what: "a move in mm",
-    min: -1e5,
-    max: 1e5,
-};
-pub(super) const QUATERNION: Quantity = Quantity {
-    what: "a component of a unit quaternion",
-    min: -1.001,
-    max: 1.001,
-};
-pub(super) const ANGLE_DEG: Quantity = Quantity {
-    what: "an angle in degrees",
-    min: -36_000.0,
-    max: 36_000.0,
-};
+pub(super) const BALL_RADIUS_MM: Quantity = Quantity { what: "a ball's radius in mm", min: 1e-3, max: 1e4 };
+pub(super) const LENGTH_STD_MM: Quantity =
+    Quantity { what: "a standard deviation in mm (left out where it is not known)", min: 1e-6, max: 100.0 };
+pub(super) const ORIENTATION_STD_DEG: Quantity =
+    Quantity { what: "a standard deviation in degrees (left out where it is not known)", min: 1e-6, max: 90.0 };
+pub(super) const REFERENCE_DISTANCE_MM: Quantity = Quantity { what: "a distance in mm", min: 1e-3, max: 1e5 };
+pub(super) const POSITION_MM: Quantity = Quantity { what: "a position in mm", min: -1e6, max: 1e6 };
+pub(super) const POINT_MM: Quantity = Quantity { what: "a coordinate in mm", min: -1e5, max: 1e5 };
+pub(super) const STEP_MM: Quantity = Quantity { what: "a move in mm", min: -1e5, max: 1e5 };
+pub(super) const QUATERNION: Quantity = Quantity { what: "a component of a unit quaternion", min: -1.001, max: 1.001 };
+pub(super) const ANGLE_DEG: Quantity = Quantity { what: "an angle in degrees", min: -36_000.0, max: 36_000.0 };

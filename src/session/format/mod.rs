@@ -60,20 +60,12 @@ pub fn load_with_notes(path: &Path) -> Result<Loaded, SessionError> {
     let metadata = fs::metadata(path).map_err(unreadable)?;
     if !metadata.is_file() {
         return Err(SessionError::NotAFile {
-            found: if metadata.is_dir() {
-                "a folder"
-            } else {
-                "a device or pipe"
-            },
+            found: if metadata.is_dir() { "a folder" } else { "a device or pipe" },
             file,
         });
     }
     if metadata.len() > MAX_BYTES {
-        return Err(SessionError::TooLarge {
-            file,
-            found_bytes: metadata.len(),
-            limit_bytes: MAX_BYTES,
-        });
+        return Err(SessionError::TooLarge { file, found_bytes: metadata.len(), limit_bytes: MAX_BYTES });
     }
     let bytes = fs::read(path).map_err(unreadable)?;
     parse_with_notes(&bytes, &file)
@@ -97,11 +89,7 @@ pub fn parse_with_notes(bytes: &[u8], origin: &str) -> Result<Loaded, SessionErr
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let text = std::str::from_utf8(bytes).map_err(|error| {
         let (line, column) = line_and_column(&bytes[..error.valid_up_to()]);
-        SessionError::NotUtf8 {
-            file: file.clone(),
-            line,
-            column,
-        }
+        SessionError::NotUtf8 { file: file.clone(), line, column }
     })?;
     if text.trim().is_empty() {
         return Err(SessionError::Empty { file });
@@ -114,9 +102,7 @@ pub fn parse_with_notes(bytes: &[u8], origin: &str) -> Result<Loaded, SessionErr
         expected: refusal.expected,
     };
     let root_cursor = Cursor::root(&tree);
-    let root = root_cursor
-        .object("a session, an object like {\"format\": \"handeye-session\", …}")
-        .map_err(invalid)?;
+    let root = root_cursor.object("a session, an object like {\"format\": \"handeye-session\", …}").map_err(invalid)?;
     let format = root.required("format", &quoted(names::FORMAT)).map_err(invalid)?;
     format.one_of(&[(names::FORMAT, ())]).map_err(invalid)?;
     let version_expected = format!("the version of the format, a whole number from 1 to {VERSION}");
@@ -124,20 +110,13 @@ pub fn parse_with_notes(bytes: &[u8], origin: &str) -> Result<Loaded, SessionErr
     match version.count() {
         Some(VERSION) => {}
         Some(found) if found > VERSION => {
-            return Err(SessionError::NewerVersion {
-                file,
-                found,
-                supported: VERSION,
-            });
+            return Err(SessionError::NewerVersion { file, found, supported: VERSION });
         }
         _ => return Err(invalid(version.refuse(version_expected))),
     }
     let mut mended = v1::Mended::default();
     let session = v1::session(&root, &mut mended).map_err(invalid)?;
-    Ok(Loaded {
-        session,
-        notes: mended.into_findings(),
-    })
+    Ok(Loaded { session, notes: mended.into_findings() })
 }
 
 /// The file as messages name it.
@@ -146,10 +125,7 @@ fn file_name(path: &Path) -> String {
 }
 
 fn line_and_column(before: &[u8]) -> (usize, usize) {
-    let line_start = before
-        .iter()
-        .rposition(|byte| *byte == b'\n')
-        .map_or(0, |newline| newline + 1);
+    let line_start = before.iter().rposition(|byte| *byte == b'\n').map_or(0, |newline| newline + 1);
     let num_newlines = before.split(|byte| *byte == b'\n').count() - 1;
     (num_newlines + 1, before.len() - line_start + 1)
 }
@@ -159,29 +135,18 @@ fn syntax_error(file: String, text: &str, error: &serde_json::Error) -> SessionE
     const CONTEXT_CHARS: usize = 24;
     let (line, column) = (error.line(), error.column());
     let message = error.to_string();
-    let problem = message
-        .strip_suffix(&format!(" at line {line} column {column}"))
-        .unwrap_or(&message);
+    let problem = message.strip_suffix(&format!(" at line {line} column {column}")).unwrap_or(&message);
     let found = if error.is_eof() {
         "the end of the file".to_owned()
     } else {
         // The column counts bytes up to and including the offending one; it may stand inside a character.
         let line_text = text.lines().nth(line.saturating_sub(1)).unwrap_or_default();
-        let start = (0..column)
-            .rev()
-            .find(|byte| line_text.is_char_boundary(*byte))
-            .unwrap_or_default();
+        let start = (0..column).rev().find(|byte| line_text.is_char_boundary(*byte)).unwrap_or_default();
         let rest = line_text.get(start..).unwrap_or_default();
         match rest.chars().take(CONTEXT_CHARS).collect::<String>() {
             context if context.is_empty() => "the end of the line".to_owned(),
             context => format!("`{}`", on_one_line(&context)),
         }
     };
-    SessionError::Syntax {
-        file,
-        line,
-        column,
-        found,
-        problem: on_one_line(problem),
-    }
+    SessionError::Syntax { file, line, column, found, problem: on_one_line(problem) }
 }

@@ -12,18 +12,8 @@ pub(super) const ON_FLANGE: &str = "on-flange";
 pub(super) const FIXED: &str = "fixed";
 pub(super) const AUTO: &str = "auto";
 
-const SESSION: &[&str] = &[
-    "format",
-    "version",
-    "name",
-    "notes",
-    "robot",
-    "sensor",
-    "target",
-    "mount",
-    "stations",
-    "published",
-];
+const SESSION: &[&str] =
+    &["format", "version", "name", "notes", "robot", "sensor", "target", "mount", "stations", "published"];
 pub(super) const ROBOT: &[&str] = &["model", "pose_convention", "position_std_mm", "orientation_std_deg"];
 pub(super) const SENSOR: &[&str] = &["model", "profile_std_mm", "reference_distance_mm"];
 pub(super) const STATION: &[&str] = &["label", "enabled", "side", "edge", "captures"];
@@ -31,12 +21,7 @@ pub(super) const CAPTURE: &[&str] = &["base_from_flange", "profile", "point_mm",
 pub(super) const PROFILE: &[&str] = &["x_mm", "z_mm"];
 pub(super) const POSE: &[&str] = &["translation_mm", "quaternion_wxyz", "euler_deg", "convention"];
 pub(super) const PUBLISHED: &[&str] = &["ball_in_base_mm", "error_from_first_mm", "caption"];
-pub(super) const TRUTH: &[&str] = &[
-    "flange_from_sensor",
-    "base_from_sensor",
-    "ball_in_base_mm",
-    "ball_in_flange_mm",
-];
+pub(super) const TRUTH: &[&str] = &["flange_from_sensor", "base_from_sensor", "ball_in_base_mm", "ball_in_flange_mm"];
 
 /// Fields of the top level that are ours for this target; any others are kept as they are.
 pub(super) fn session(target: &Target) -> Vec<&'static str> {

@@ -17,9 +17,8 @@ use super::{Session, SessionError, file_name, parse_with_notes, to_json};
 /// [`SessionError`]; an older file of this name is then as it was.
 pub fn save(session: &Session, path: &Path) -> Result<(), SessionError> {
     let json = to_json(session);
-    parse_with_notes(json.as_bytes(), &file_name(path)).map_err(|refusal| SessionError::WouldNotReadBack {
-        refusal: Box::new(refusal),
-    })?;
+    parse_with_notes(json.as_bytes(), &file_name(path))
+        .map_err(|refusal| SessionError::WouldNotReadBack { refusal: Box::new(refusal) })?;
     replace_file(path, json.as_bytes()).map_err(|error| SessionError::Unwritable {
         file: file_name(path),
         kind: error.kind(),
@@ -36,11 +35,7 @@ fn replace_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => None,
         Err(error) => return Err(error),
     };
-    let target = if existing.is_some() {
-        fs::canonicalize(path)?
-    } else {
-        path.to_path_buf()
-    };
+    let target = if existing.is_some() { fs::canonicalize(path)? } else { path.to_path_buf() };
     let folder = match target.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent.to_path_buf(),
         _ => PathBuf::from("."),

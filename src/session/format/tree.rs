@@ -52,12 +52,9 @@ impl Node {
             Self::Text(text) => Value::String(text.clone()),
             Self::Numbers(numbers) => Value::Array(numbers.iter().map(|number| number_value(*number)).collect()),
             Self::List(nodes) => Value::Array(nodes.iter().map(Self::to_value).collect()),
-            Self::Object(fields) => Value::Object(
-                fields
-                    .iter()
-                    .map(|(key, node)| (key.clone(), node.to_value()))
-                    .collect::<Map<_, _>>(),
-            ),
+            Self::Object(fields) => {
+                Value::Object(fields.iter().map(|(key, node)| (key.clone(), node.to_value())).collect::<Map<_, _>>())
+            }
         }
     }
 
@@ -93,10 +90,7 @@ pub(super) fn quoted(text: &str) -> String {
 }
 
 /// A number of a compact list as serde's type: whole ones as integers, as people write them.
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "whole numbers below 2^53 convert exactly"
-)]
+#[expect(clippy::cast_possible_truncation, reason = "whole numbers below 2^53 convert exactly")]
 fn number_value(number: f64) -> Value {
     const EXACT: f64 = 9_007_199_254_740_992.0;
     let is_negative_zero = number == 0.0 && number.is_sign_negative();
@@ -176,9 +170,7 @@ impl<'de> Visitor<'de> for NodeVisitor {
     }
 
     fn visit_f64<E: de::Error>(self, value: f64) -> Result<Node, E> {
-        Number::from_f64(value)
-            .map(Node::Number)
-            .ok_or_else(|| E::custom("number out of range"))
+        Number::from_f64(value).map(Node::Number).ok_or_else(|| E::custom("number out of range"))
     }
 
     fn visit_str<E: de::Error>(self, value: &str) -> Result<Node, E> {
@@ -211,10 +203,7 @@ impl<'de> Visitor<'de> for NodeVisitor {
                 !seen.insert(key.clone())
             };
             if is_repeated {
-                return Err(de::Error::custom(format!(
-                    "the field {} stands twice in one object",
-                    quoted(&key)
-                )));
+                return Err(de::Error::custom(format!("the field {} stands twice in one object", quoted(&key))));
             }
             fields.push((key, map.next_value()?));
         }
@@ -247,19 +236,11 @@ mod tests {
 
     #[test]
     fn a_field_that_stands_twice_is_refused_in_small_and_large_objects() {
-        assert!(
-            parse("{\"a\":1,\"a\":2}")
-                .expect_err("twice")
-                .to_string()
-                .contains("\"a\" stands twice")
-        );
+        assert!(parse("{\"a\":1,\"a\":2}").expect_err("twice").to_string().contains("\"a\" stands twice"));
         for repeated in [0, 20, 39] {
             let fields: Vec<String> = (0..40).chain([repeated]).map(|idx| format!("\"f{idx}\":0")).collect();
             let refusal = parse(&format!("{{{}}}", fields.join(","))).expect_err("twice");
-            assert!(
-                refusal.to_string().contains(&format!("\"f{repeated}\" stands twice")),
-                "{refusal}"
-            );
+            assert!(refusal.to_string().contains(&format!("\"f{repeated}\" stands twice")), "{refusal}");
         }
     }
 }

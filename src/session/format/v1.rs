@@ -38,11 +38,7 @@ impl Mended {
     pub fn into_findings(self) -> Vec<Finding> {
         let num_poses = self.num_poses;
         self.worst
-            .map(|(worst_path, worst_norm)| Finding::QuaternionsNormalised {
-                num_poses,
-                worst_path,
-                worst_norm,
-            })
+            .map(|(worst_path, worst_norm)| Finding::QuaternionsNormalised { num_poses, worst_path, worst_norm })
             .into_iter()
             .collect()
     }
@@ -75,19 +71,12 @@ pub(super) fn session(root: &Object<'_>, mended: &mut Mended) -> Result<Session,
     Ok(Session {
         name: root.text_or_empty("name")?,
         notes: root.text_or_empty("notes")?,
-        robot: root
-            .optional("robot")
-            .map_or_else(|| Ok(Robot::default()), |cursor| robot(&cursor))?,
-        sensor: root
-            .optional("sensor")
-            .map_or_else(|| Ok(Sensor::default()), |cursor| sensor(&cursor))?,
+        robot: root.optional("robot").map_or_else(|| Ok(Robot::default()), |cursor| robot(&cursor))?,
+        sensor: root.optional("sensor").map_or_else(|| Ok(Sensor::default()), |cursor| sensor(&cursor))?,
         mount: root.optional("mount").map_or(Ok(Mount::default()), |cursor| {
             cursor.one_of(&[(names::ON_FLANGE, Mount::OnFlange), (names::FIXED, Mount::Fixed)])
         })?,
-        published: root
-            .optional("published")
-            .map(|cursor| published(&cursor, stations.len()))
-            .transpose()?,
+        published: root.optional("published").map(|cursor| published(&cursor, stations.len())).transpose()?,
         target,
         stations,
         truth,
@@ -99,10 +88,9 @@ fn robot(cursor: &Cursor<'_>) -> Result<Robot, Refusal> {
     let object = cursor.object("an object that describes the robot")?;
     Ok(Robot {
         model: object.text_or_empty("model")?,
-        pose_convention: object.optional("pose_convention").map_or_else(
-            || Ok(PoseConvention::default_convention()),
-            |cursor| convention(&cursor),
-        )?,
+        pose_convention: object
+            .optional("pose_convention")
+            .map_or_else(|| Ok(PoseConvention::default_convention()), |cursor| convention(&cursor))?,
         position_std_mm: object.optional_number("position_std_mm", &limits::LENGTH_STD_MM)?,
         orientation_std_deg: object.optional_number("orientation_std_deg", &limits::ORIENTATION_STD_DEG)?,
         unknown: object.unknown(names::ROBOT),
@@ -128,21 +116,15 @@ fn target(root: &Object<'_>) -> Result<(Target, UnknownFields), Refusal> {
     let expected = "an object like {\"kind\": \"ball\", \"radius_mm\": 15}";
     let cursor = root.required("target", expected)?;
     let object = cursor.object(expected)?;
-    let kind = object
-        .required("kind", &listed(KINDS.iter().map(|(word, _)| *word)))?
-        .one_of(KINDS)?;
+    let kind = object.required("kind", &listed(KINDS.iter().map(|(word, _)| *word)))?.one_of(KINDS)?;
     let target = match kind {
         Kind::Ball => {
             let radius = object.required("radius_mm", &limits::BALL_RADIUS_MM.to_string())?;
-            Target::Ball {
-                radius_mm: radius.number(&limits::BALL_RADIUS_MM)?,
-            }
+            Target::Ball { radius_mm: radius.number(&limits::BALL_RADIUS_MM)? }
         }
         Kind::RightAnglePlate => Target::RightAnglePlate,
         Kind::Point => Target::Point,
-        Kind::Rgbd => Target::Rgbd {
-            sequence: sequence(root)?,
-        },
+        Kind::Rgbd => Target::Rgbd { sequence: sequence(root)? },
     };
     let mut unknown = root.unknown(&names::session(&target));
     object.keep_unknown_in(&mut unknown, "target", names::target(&target));
@@ -178,10 +160,7 @@ fn stations(root: &Object<'_>, target: &Target, mended: &mut Mended) -> Result<V
         if let Some(first_idx) = station_of_label.insert(station.label.clone(), station_idx) {
             return Err(Refusal {
                 path: format!("{}.label", element.path()),
-                found: format!(
-                    "{}, which stations[{first_idx}] has too",
-                    super::tree::quoted(&station.label)
-                ),
+                found: format!("{}, which stations[{first_idx}] has too", super::tree::quoted(&station.label)),
                 expected: "a label of its own for each station".to_owned(),
             });
         }
@@ -196,9 +175,7 @@ fn station(cursor: &Cursor<'_>, station_idx: usize, target: &Target, mended: &mu
     let edge = match object.optional("edge") {
         Some(cursor) => Some(cursor.one_of(&edges)?),
         None if *target == Target::RightAnglePlate => Some(
-            object
-                .required("edge", "\"p\" or \"q\": the edge of the plate that this station saw")?
-                .one_of(&edges)?,
+            object.required("edge", "\"p\" or \"q\": the edge of the plate that this station saw")?.one_of(&edges)?,
         ),
         None => None,
     };
@@ -218,10 +195,7 @@ fn station(cursor: &Cursor<'_>, station_idx: usize, target: &Target, mended: &mu
             ])
         })?,
         edge,
-        captures: elements
-            .iter()
-            .map(|element| capture(element, mended))
-            .collect::<Result<_, _>>()?,
+        captures: elements.iter().map(|element| capture(element, mended)).collect::<Result<_, _>>()?,
         unknown: object.unknown(names::STATION),
     })
 }
@@ -249,34 +223,20 @@ fn capture(cursor: &Cursor<'_>, mended: &mut Mended) -> Result<Capture, Refusal>
         (Some(_), Some(_)) => return Err(cursor.refuse_as("both profile and point_mm", either)),
         (None, None) => return Err(cursor.refuse_as("neither profile nor point_mm", either)),
     };
-    Ok(Capture {
-        base_from_flange,
-        reading,
-        step_mm: object.optional_number("step", &limits::STEP_MM)?,
-        unknown,
-    })
+    Ok(Capture { base_from_flange, reading, step_mm: object.optional_number("step", &limits::STEP_MM)?, unknown })
 }
 
 fn profile(cursor: &Cursor<'_>, unknown: &mut UnknownFields) -> Result<Profile, Refusal> {
     let object = cursor.object("an object with x_mm and z_mm")?;
     object.keep_unknown_in(unknown, "profile", names::PROFILE);
-    let (x_expected, z_expected) = (
-        "a list of numbers in mm",
-        "a list of numbers in mm, null for a missing point",
-    );
-    let (x_cursor, z_cursor) = (
-        object.required("x_mm", x_expected)?,
-        object.required("z_mm", z_expected)?,
-    );
+    let (x_expected, z_expected) = ("a list of numbers in mm", "a list of numbers in mm, null for a missing point");
+    let (x_cursor, z_cursor) = (object.required("x_mm", x_expected)?, object.required("z_mm", z_expected)?);
     let x_mm = x_cursor.numbers_or_null(x_expected)?;
     if let Some(index) = x_mm.iter().position(|x| x.is_nan()) {
         return Err(x_cursor.refuse_element(index, "null", "a number in mm: only z may be missing"));
     }
-    let z_mm: Vec<Option<f64>> = z_cursor
-        .numbers_or_null(z_expected)?
-        .iter()
-        .map(|z| (!z.is_nan()).then_some(*z))
-        .collect();
+    let z_mm: Vec<Option<f64>> =
+        z_cursor.numbers_or_null(z_expected)?.iter().map(|z| (!z.is_nan()).then_some(*z)).collect();
     Profile::new(x_mm.to_vec(), &z_mm).map_err(|error| match error {
         ProfileError::LengthMismatch { num_x, .. } => {
             z_cursor.refuse(format!("a list of {num_x}, as many as x_mm has"))
@@ -299,9 +259,7 @@ fn pose<Dst: Frame, Src: Frame>(
     let cursor = parent.required(name, expected)?;
     let object = cursor.object(expected)?;
     object.keep_unknown_in(unknown, name, names::POSE);
-    let translation_mm = object
-        .required("translation_mm", "a list of 3 numbers in mm")?
-        .vec3(&limits::POSITION_MM)?;
+    let translation_mm = object.required("translation_mm", "a list of 3 numbers in mm")?.vec3(&limits::POSITION_MM)?;
     let rotation = match (object.optional("quaternion_wxyz"), object.optional("euler_deg")) {
         (Some(cursor), None) => quaternion(&cursor, mended)?,
         (None, Some(cursor)) => {
@@ -341,11 +299,7 @@ fn quaternion(cursor: &Cursor<'_>, mended: &mut Mended) -> Result<UnitQuaternion
 
 /// Of the two quaternions of a rotation the one with `w ≥ 0`, as it will be saved.
 fn upper_half(rotation: UnitQuaternion<f64>) -> UnitQuaternion<f64> {
-    if rotation.w < 0.0 {
-        UnitQuaternion::new_unchecked(-rotation.into_inner())
-    } else {
-        rotation
-    }
+    if rotation.w < 0.0 { UnitQuaternion::new_unchecked(-rotation.into_inner()) } else { rotation }
 }
 
 fn published(cursor: &Cursor<'_>, num_stations: usize) -> Result<Published, Refusal> {
@@ -372,20 +326,12 @@ fn published(cursor: &Cursor<'_>, num_stations: usize) -> Result<Published, Refu
 fn truth(cursor: &Cursor<'_>, mended: &mut Mended) -> Result<Truth, Refusal> {
     let object = cursor.object("an object with the true calibration")?;
     let present = |fixed, on_flange| {
-        if object.optional(fixed).is_some() {
-            fixed
-        } else {
-            on_flange
-        }
+        if object.optional(fixed).is_some() { fixed } else { on_flange }
     };
     let pose_name = present("base_from_sensor", "flange_from_sensor");
     let ball_name = present("ball_in_flange_mm", "ball_in_base_mm");
     let mut unknown = object.unknown(names::TRUTH);
     let flange_from_sensor = pose(&object, pose_name, &mut unknown, mended)?;
     let ball = object.required(ball_name, "the ball's true centre, a list of 3 numbers in mm")?;
-    Ok(Truth {
-        flange_from_sensor,
-        ball_in_base_mm: ball.vec3(&limits::POSITION_MM)?,
-        unknown,
-    })
+    Ok(Truth { flange_from_sensor, ball_in_base_mm: ball.vec3(&limits::POSITION_MM)?, unknown })
 }

@@ -111,11 +111,7 @@ fn station(out: &mut Writer, station: &Station) {
 fn capture(out: &mut Writer, capture: &Capture) {
     out.open(Layout::Line);
     out.field("base_from_flange");
-    pose(
-        out,
-        &capture.base_from_flange,
-        nested(&capture.unknown, "base_from_flange"),
-    );
+    pose(out, &capture.base_from_flange, nested(&capture.unknown, "base_from_flange"));
     out.optional_number("step", capture.step_mm);
     out.unknown(&capture.unknown, names::CAPTURE);
     match &capture.reading {
@@ -151,10 +147,9 @@ fn published(out: &mut Writer, published: &Published) {
     if !published.caption.is_empty() {
         out.field("caption").text(&published.caption);
     }
-    for (name, rows) in [
-        ("ball_in_base_mm", &published.ball_in_base_mm),
-        ("error_from_first_mm", &published.error_from_first_mm),
-    ] {
+    for (name, rows) in
+        [("ball_in_base_mm", &published.ball_in_base_mm), ("error_from_first_mm", &published.error_from_first_mm)]
+    {
         if !rows.is_empty() {
             out.field(name);
             out.list(Layout::Line, rows, |out, row| {
@@ -209,12 +204,7 @@ struct Writer {
 impl Writer {
     fn begin(&mut self, layout: Layout, opening: char, closing: char) {
         self.text.push(opening);
-        self.levels.push(Level {
-            layout,
-            is_empty: true,
-            closing,
-            is_broken: false,
-        });
+        self.levels.push(Level { layout, is_empty: true, closing, is_broken: false });
     }
 
     fn open(&mut self, layout: Layout) {

@@ -6,46 +6,25 @@ use crate::session::check::Finding;
 #[must_use]
 pub fn finding_message(finding: &Finding) -> String {
     match finding {
-        Finding::QuaternionsNormalised {
-            num_poses,
-            worst_path,
-            worst_norm,
-        } => format!(
+        Finding::QuaternionsNormalised { num_poses, worst_path, worst_norm } => format!(
             "{num_poses} quaternion{} normalised; the furthest off is {worst_path} with norm {worst_norm:.6}.",
             if *num_poses == 1 { " was" } else { "s were" }
         ),
         Finding::NoStations => "There are no stations yet.".to_owned(),
         Finding::FewStations { num_enabled, needed } => {
-            format!(
-                "{num_enabled} enabled station{}: at least {needed} are needed to solve.",
-                plural(*num_enabled)
-            )
+            format!("{num_enabled} enabled station{}: at least {needed} are needed to solve.", plural(*num_enabled))
         }
-        Finding::TwinStations {
-            label,
-            twin_label,
-            distance_mm,
-            angle_deg,
-        } => format!(
+        Finding::TwinStations { label, twin_label, distance_mm, angle_deg } => format!(
             "Stations {label} and {twin_label} have the same pose within {distance_mm:.2} mm and {angle_deg:.2}°: the second adds little."
         ),
         Finding::EmptyProfile { label, capture_idx } => {
             format!("Station {label}, profile {}: no valid point.", capture_idx + 1)
         }
-        Finding::StepDiffersFromPose {
-            label,
-            capture_idx,
-            step_mm,
-            moved_mm,
-        } => format!(
+        Finding::StepDiffersFromPose { label, capture_idx, step_mm, moved_mm } => format!(
             "Station {label}, profile {}: the step was {step_mm:.3} mm, but the recorded poses are {moved_mm:.3} mm apart.",
             capture_idx + 1
         ),
-        Finding::FarPose {
-            label,
-            capture_idx,
-            distance_mm,
-        } => format!(
+        Finding::FarPose { label, capture_idx, distance_mm } => format!(
             "Station {label}, profile {}: the pose is {:.1} m from the base; check that translations are in mm.",
             capture_idx + 1,
             distance_mm / 1000.0

@@ -4,7 +4,6 @@ use crate::calibrate::{Verdict, VerdictReason, Warning};
 
 use super::{verdict_name, warning_message};
 
-
 /// The verdict with its reason, in one line.
 #[must_use]
 pub fn verdict_line(verdict: Verdict, reason: VerdictReason, warnings: &[Warning]) -> String {

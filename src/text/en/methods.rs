@@ -28,7 +28,9 @@ pub const fn method_short_name(method: Method) -> &'static str {
 #[must_use]
 pub const fn method_description(method: Method) -> &'static str {
     match method {
-        Method::BallFixedPoint => "One section a station; the ball's centre is ±√(R² − l²) beside the laser plane (Lin & Mu 2019, eq. 1–2)",
+        Method::BallFixedPoint => {
+            "One section a station; the ball's centre is ±√(R² − l²) beside the laser plane (Lin & Mu 2019, eq. 1–2)"
+        }
         Method::BallMaxArcStep => "Steps along Y and stops at the first section with l ≥ R (Lin & Mu 2019, eq. 3)",
         Method::BallMaxArc => "Fits the whole radius-vs-step curve with the real pose of every step",
         Method::BallBundle => "All points of all profiles at once: the answer to use",

@@ -281,4 +281,5 @@ pub const NO_OPENGL: &str = "the window needs OpenGL; on Debian and Ubuntu: apt 
 /// The one line told where the display does not answer.
 pub const DEAD_DISPLAY: &str = "the window could not reach the display";
 /// What works all the same.
-pub const WITHOUT_WINDOW: &str = "`handeye solve FILE` works without one (`handeye report FILE` will, in a later version)";
+pub const WITHOUT_WINDOW: &str =
+    "`handeye solve FILE` works without one (`handeye report FILE` will, in a later version)";

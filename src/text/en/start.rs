@@ -34,12 +34,20 @@ pub const READING: &str = "reading …";
 #[must_use]
 pub fn sample_lesson(file_name: &str) -> (&'static str, &'static str) {
     match file_name {
-        "lin-mu-2019-table-1.json" => ("Lin & Mu 2019, table 1", "Fixed point: the figures printed in the paper, re-computed"),
-        "lin-mu-2019-table-2.json" => ("Lin & Mu 2019, table 2", "Largest arc: the figures printed in the paper, re-computed"),
+        "lin-mu-2019-table-1.json" => {
+            ("Lin & Mu 2019, table 1", "Fixed point: the figures printed in the paper, re-computed")
+        }
+        "lin-mu-2019-table-2.json" => {
+            ("Lin & Mu 2019, table 2", "Largest arc: the figures printed in the paper, re-computed")
+        }
         "clean-sweeps.json" => ("Clean sweeps", "A calibration as it should be: all methods agree"),
-        "dirty-profiles.json" => ("Dirty profiles", "Glints, gaps and a fixture in view: outliers are found and left out"),
+        "dirty-profiles.json" => {
+            ("Dirty profiles", "Glints, gaps and a fixture in view: outliers are found and left out")
+        }
         "few-rotations.json" => ("Few rotations", "Small residuals that prove nothing: orientations too much alike"),
-        "near-largest-arc.json" => ("Near the largest arc", "Where the fixed-point method goes blind, and the whole curve does not"),
+        "near-largest-arc.json" => {
+            ("Near the largest arc", "Where the fixed-point method goes blind, and the whole curve does not")
+        }
         "one-bad-pose.json" => ("One bad pose", "A mistyped pose: leaving each station out in turn finds it"),
         _ => ("Sample", "A sample session"),
     }

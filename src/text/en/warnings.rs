@@ -39,9 +39,9 @@ pub fn warning_message(warning: &Warning) -> String {
         Warning::TravelOffNormal { label, angle_deg } => format!(
             "The robot travels {angle_deg:.1}° off the laser's normal at station {label}; the published method takes the travel for the normal."
         ),
-        Warning::PeakNotCovered { label, beyond_mm } => format!(
-            "The sweep at station {label} ends {beyond_mm:.2} mm before the largest arc."
-        ),
+        Warning::PeakNotCovered { label, beyond_mm } => {
+            format!("The sweep at station {label} ends {beyond_mm:.2} mm before the largest arc.")
+        }
         Warning::StepDiffersFromPose { label, difference_mm } => format!(
             "At station {label} the recorded poses and the commanded steps differ by up to {difference_mm:.3} mm."
         ),
@@ -70,10 +70,14 @@ pub const fn warning_remedy(warning: &Warning) -> &'static str {
         Warning::ArcLargerThanBall { .. } => "Check the ball's radius and the profile's scale.",
         Warning::CaptureRefused { .. } => "Look at the profile in Arcs; capture it again with the ball in view.",
         Warning::StationSkipped { .. } => "Record a sweep across the ball at this station.",
-        Warning::TravelOffNormal { .. } => "Let the robot step along the calibrated laser normal; the whole-curve method allows for the angle.",
+        Warning::TravelOffNormal { .. } => {
+            "Let the robot step along the calibrated laser normal; the whole-curve method allows for the angle."
+        }
         Warning::PeakNotCovered { .. } => "Let the sweep run on until the arc has shrunk again.",
         Warning::StepDiffersFromPose { .. } => "Use the whole-curve method: it takes the real poses.",
-        Warning::StationStandsOut { .. } => "Check the pose and the profile of this station; un-tick it to see what changes.",
+        Warning::StationStandsOut { .. } => {
+            "Check the pose and the profile of this station; un-tick it to see what changes."
+        }
         Warning::NotConverged { .. } => "Check poses and units.",
     }
 }
