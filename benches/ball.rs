@@ -83,7 +83,7 @@ fn hand_eye(criterion: &mut Criterion) {
                     .enumerate()
                     .map(|(idx, (pose, centre))| CentreObservation::point(idx, *pose, *centre))
                     .collect();
-                minimise(observations.iter(), start)
+                minimise(&observations.iter(), start)
             });
         });
     }

@@ -1,4 +1,6 @@
 //! Circle fits and arc extraction on points whose circle is known.
+#![expect(clippy::expect_used, reason = "a test that finds nothing to check must fail")]
+#![expect(clippy::cast_precision_loss, reason = "small counts")]
 
 use std::f64::consts::PI;
 
@@ -7,6 +9,7 @@ use handeye::geometry::{Profile, stats};
 use proptest::prelude::*;
 
 const TRUTH: Circle = Circle { x_mm: 3.0, z_mm: 80.0, radius_mm: 12.0 };
+const TRIALS: u64 = 400;
 const BALL: ArcOptions = ArcOptions { ball_radius_mm: 15.0, profile_std_mm: None };
 
 /// A repeatable sequence of normally distributed numbers (Lehmer's generator, Box and Muller's transform).
@@ -90,7 +93,6 @@ fn points_that_make_no_circle_are_refused_by_name() {
 #[test]
 fn stated_covariance_is_that_of_repeated_fits() {
     let (mut errors, mut stated) = ([Vec::new(), Vec::new(), Vec::new()], [0.0; 3]);
-    const TRIALS: u64 = 400;
     for seed in 0..TRIALS {
         let (x, z) = arc(100.0, 150, 0.02, 31 * seed);
         let fit = geometric::fit(&x, &z, TRUTH).expect("a circle");
@@ -146,11 +148,15 @@ fn dirty(mirror_x: bool, mirror_z: bool) -> (Profile, Circle) {
     }
     let mut circle = TRUTH;
     if mirror_x {
-        x_mm.iter_mut().for_each(|x| *x = -*x);
+        for x in &mut x_mm {
+            *x = -*x;
+        }
         circle.x_mm = -circle.x_mm;
     }
     if mirror_z {
-        z_mm.iter_mut().for_each(|z| *z = -*z);
+        for z in &mut z_mm {
+            *z = -*z;
+        }
         circle.z_mm = -circle.z_mm;
     }
     (profile(&x_mm, &z_mm), circle)

@@ -1,4 +1,5 @@
 //! The workbench without a window: from a file to results, edits, undo, and back to a file.
+#![expect(clippy::expect_used, reason = "a test that finds nothing to check must fail")]
 
 use std::path::Path;
 use std::sync::Arc;
@@ -59,7 +60,8 @@ fn leaving_a_station_out_solves_again_and_undo_brings_the_old_result_back() {
     assert!(document.is_unsaved());
     assert_eq!(document.history.undo_label(), Some("leave out station 7"));
     bench.apply(Command::Undo);
-    assert_eq!(bench.translation(), before);
+    // Solved again from the same data: the same bits.
+    assert_eq!(bench.translation().map(f64::to_bits), before.map(f64::to_bits));
     assert!(!bench.workbench.document().expect("open").is_unsaved());
     bench.apply(Command::Redo);
     assert_eq!(verdict(&bench), Verdict::Good);

@@ -268,7 +268,7 @@ impl Workbench {
         match self.document.as_ref().map(|document| document.path.clone()) {
             Some(Some(path)) => self.start_saving(path),
             Some(None) => {
-                self.notify(NoticeKind::Error, "this session has no file yet: choose one with \"Save as…\"".to_owned())
+                self.notify(NoticeKind::Error, "this session has no file yet: choose one with \"Save as…\"".to_owned());
             }
             None => self.notify(NoticeKind::Error, "there is no open session to save".to_owned()),
         }

@@ -26,9 +26,9 @@ pub struct PoseGeometry {
     offsets: Vec<Vec3>,
     mean_rotation_inverse: Mat3,
     mean_offset: Vec3,
-    /// Inverse of Σ ÃᵀÃ.
+    /// Inverse of Σ `ÃᵀÃ`.
     ball_covariance: Mat3,
-    /// Eigenvalues of Σ ÃᵀÃ / n, rising: mean squared rotation about the three axes, rad².
+    /// Eigenvalues of Σ `ÃᵀÃ` / n, rising: mean squared rotation about the three axes, rad².
     pub rotation_about_axes: [f64; 3],
     /// The axis of the least rotation, in the (mean) flange frame.
     pub weakest_axis_in_flange: Vec3,

@@ -67,7 +67,7 @@ pub struct Sweep {
     pub published_stop_mm: f64,
     /// The capture at which it stops.
     pub published_stop_idx: usize,
-    /// How far the published rule may be off here: about √(2 R σ_l) and half a step, mm.
+    /// How far the published rule may be off here: about √(2 R `σ_l`) and half a step, mm.
     pub published_stop_std_mm: f64,
     /// Angle between the travel and the laser's normal, rad.
     pub travel_off_normal_rad: f64,

@@ -39,7 +39,7 @@ pub struct Minimum {
 ///
 /// # Errors
 /// [`SolveError::Undetermined`] if a combination of the unknowns is free, [`SolveError::Diverged`] if numbers run away.
-pub fn minimise<'a, I>(observations: I, start: State) -> Result<Minimum, SolveError>
+pub fn minimise<'a, I>(observations: &I, start: State) -> Result<Minimum, SolveError>
 where
     I: Iterator<Item = &'a CentreObservation> + Clone,
 {
@@ -51,7 +51,7 @@ where
 ///
 /// # Errors
 /// As [`minimise`].
-pub fn minimise_from<'a, I>(observations: I, start: State, normal: Normal, settled: f64) -> Result<Minimum, SolveError>
+pub fn minimise_from<'a, I>(observations: &I, start: State, normal: Normal, settled: f64) -> Result<Minimum, SolveError>
 where
     I: Iterator<Item = &'a CentreObservation> + Clone,
 {
@@ -94,7 +94,7 @@ fn step_size(step: &Gradient) -> f64 {
 /// The sums that a step is computed from.
 #[derive(Clone, Copy, Debug)]
 pub struct Normal {
-    /// Σ JᵀWJ.
+    /// Σ `JᵀWJ`.
     pub hessian: Hessian,
     /// Half the negative gradient.
     pub gradient: Gradient,

@@ -56,7 +56,7 @@ pub fn leave_one_out(
                 normal.cost += station.cost;
             }
             let others = observations.iter().filter(|observation| observation.station != left_out);
-            let minimum = minimise_from(others, *full, normal, SETTLED).ok()?;
+            let minimum = minimise_from(&others, *full, normal, SETTLED).ok()?;
             let ball_in_base = station_ball(of_station(left_out), &minimum.state, prior_information);
             Some((ball_in_base - minimum.state.ball_in_base).norm())
         })

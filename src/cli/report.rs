@@ -19,6 +19,7 @@ pub struct ReportArgs {
 }
 
 /// Runs the command: refuses, and names what there is instead.
+#[must_use]
 pub fn run(args: &ReportArgs) -> ExitCode {
     fail(
         EXIT_NOTHING_COMPUTED,

@@ -54,6 +54,7 @@ impl From<StepName> for Step {
 }
 
 /// Runs the command.
+#[must_use]
 pub fn run(args: &ScreenshotArgs) -> ExitCode {
     match ui::screenshot(args.file.as_deref(), args.step.into(), [args.width, args.height], &args.out) {
         Ok(()) => ExitCode::SUCCESS,

@@ -261,7 +261,10 @@ fn classify(profile: &Profile, kept: &robust::Kept) -> Vec<PointClass> {
     let mut classes = vec![PointClass::Missing; profile.len()];
     let mut next_kept = 0;
     for (idx, x, z) in profile.valid_points() {
-        let is_kept = kept.x_mm.get(next_kept).is_some_and(|kept_x| *kept_x == x) && kept.z_mm[next_kept] == z;
+        // Copies of the same numbers, so equal bit by bit.
+        let is_kept = next_kept < kept.x_mm.len()
+            && kept.x_mm[next_kept].to_bits() == x.to_bits()
+            && kept.z_mm[next_kept].to_bits() == z.to_bits();
         next_kept += usize::from(is_kept);
         classes[idx] = if is_kept { PointClass::Inlier } else { PointClass::Unused };
     }

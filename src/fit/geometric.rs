@@ -77,7 +77,7 @@ fn finish(circle: Circle, normal: &Normal, num_points: usize) -> Result<CircleFi
     }
 }
 
-/// One pass: JᵀJ, Jᵀr and the cost for r = distance from the centre − radius.
+/// One pass: `JᵀJ`, Jᵀr and the cost for r = distance from the centre − radius.
 fn normal_equations(x_mm: &[f64], z_mm: &[f64], circle: Circle) -> Normal {
     let [uu, uv, vv, u, v, ur, vr, r, rr] = sum_over(x_mm, z_mm, |x, z| {
         let (dx, dz) = (x - circle.x_mm, z - circle.z_mm);

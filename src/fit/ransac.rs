@@ -33,7 +33,7 @@ pub fn find_circle(x_mm: &[f64], z_mm: &[f64], search: &CircleSearch) -> Option<
     let stride = num_points.div_ceil(SCORED_POINTS).max(1);
     let scored_x: Vec<f64> = x_mm.iter().copied().step_by(stride).collect();
     let scored_z: Vec<f64> = z_mm.iter().copied().step_by(stride).collect();
-    let mut random = SplitMix(0x5eed_0f_a2c5);
+    let mut random = SplitMix(0x005e_ed0f_a2c5);
     let mut best: Option<(Circle, usize)> = None;
     for hypothesis in 0..HYPOTHESES {
         #[expect(
@@ -83,7 +83,7 @@ fn circle_through([a, b, c]: [(f64, f64); 3]) -> Option<Circle> {
     circle.radius_mm.is_finite().then_some(circle)
 }
 
-/// Vigna's SplitMix64: a few lines that give the same sequence on every machine.
+/// Vigna's `SplitMix64`: a few lines that give the same sequence on every machine.
 struct SplitMix(u64);
 
 impl SplitMix {

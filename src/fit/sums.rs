@@ -23,6 +23,7 @@ struct Sums<'a, F> {
 impl<const N: usize, F: Fn(f64, f64) -> [f64; N]> WithSimd for Sums<'_, F> {
     type Output = [f64; N];
 
+    #[expect(clippy::inline_always, reason = "must be compiled inside the function for the wide registers")]
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) -> [f64; N] {
         let mut lanes = [[0.0; LANES]; N];

@@ -113,7 +113,9 @@ mod tests {
     fn quaternion_has_positive_w_and_no_negative_zero() {
         let half_turn = UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(-0.5, 0.5, -0.5, 0.5));
         let wxyz = Transform::<Base, Flange>::from_parts(Vec3::zeros(), half_turn).quaternion_wxyz();
-        assert_eq!(wxyz, [0.5, -0.5, 0.5, -0.5]);
+        for (found, expected) in wxyz.into_iter().zip([0.5, -0.5, 0.5, -0.5]) {
+            assert!((found - expected).abs() < 1e-15, "{wxyz:?}");
+        }
         let identity = Transform::<Base, Flange>::identity().quaternion_wxyz();
         assert!(identity.iter().all(|v| v.is_sign_positive()));
     }

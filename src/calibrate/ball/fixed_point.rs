@@ -62,7 +62,7 @@ pub(super) fn find(problem: &BallProblem) -> Result<Found<'_>, SolveError> {
         .enumerate()
         .map(|(idx, (pose, centre))| CentreObservation::point(idx, *pose, *centre))
         .collect();
-    let minimum = minimise(observations.iter(), start)?;
+    let minimum = minimise(&observations.iter(), start)?;
     add_side_warning(&sections, &resolved.cost_ratios, &mut warnings);
     add_blind_warning(&sections, &mut warnings);
     let variance_factor = mean_square_residual(&observations, &minimum.state);
@@ -135,9 +135,9 @@ fn section<'a>(problem: &BallProblem, station: &'a Station, warnings: &mut Vec<W
     }
 }
 
-/// |y| = √(R² − l²) and its standard deviation (l/|y|)·σ_l; sections larger than the ball are taken for the largest.
+/// |y| = √(R² − l²) and its standard deviation (`l/|y|)·σ_l`; sections larger than the ball are taken for the largest.
 ///
-/// At the largest arc the linear formula diverges; there |y| stays below what a radius error of one σ makes, √(2 R σ_l).
+/// At the largest arc the linear formula diverges; there |y| stays below what a radius error of one σ makes, √(2 R `σ_l`).
 fn distance_from_plane(arc: &ArcFit, ball_radius_mm: f64) -> (f64, f64) {
     let section_radius_mm = arc.circle.radius_mm.min(ball_radius_mm);
     let size_y_mm = ((ball_radius_mm - section_radius_mm) * (ball_radius_mm + section_radius_mm)).sqrt();

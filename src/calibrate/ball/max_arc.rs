@@ -1,7 +1,7 @@
 //! `ball-max-arc`: the whole radius-vs-step curve, with the real pose of every step.
 //!
 //! # Source
-//! Ours, after Lin & Mu 2019, section 2. Near its top the curve is flat, so the published stop is off by about √(2 R σ_l);
+//! Ours, after Lin & Mu 2019, section 2. Near its top the curve is flat, so the published stop is off by about √(2 R `σ_l`);
 //! its flanks tell where the top is: l² = R² − (y − y₀)². "Robot Y" is the laser's normal only once the calibration is
 //! known, so the curves of all stations are fitted together with it: every step's (x, z, l) against what a ball at one
 //! place in the base gives in the sensor frame of the step's real pose.
@@ -75,12 +75,12 @@ fn find(problem: &BallProblem) -> Result<Found<'_>, SolveError> {
 
 /// A published stop that went astray must not spoil the better method: the fixed-point answer is tried as well.
 fn settle_from_best_start(problem: &BallProblem, sweeps: &[StationSweep<'_>]) -> Result<Settled, SolveError> {
+    type Start = fn(&BallProblem) -> Result<State, SolveError>;
     /// A residual below this part of the radius is no minimum far off.
     const FITS_PART: f64 = 0.01;
     let mut best: Option<(f64, Settled)> = None;
     let mut failure = SolveError::Diverged;
-    let starts: [fn(&BallProblem) -> Result<State, SolveError>; 2] = [max_arc_step::state, fixed_point::state];
-    for start in starts {
+    for start in [max_arc_step::state as Start, fixed_point::state] {
         let Ok(start) = start(problem) else { continue };
         match settle(|state| linearised(problem, sweeps, state), &problem.noise, start) {
             Ok(settled) => {

@@ -73,7 +73,7 @@ fn find(problem: &BallProblem) -> Result<Found<'_>, SolveError> {
         .enumerate()
         .map(|(idx, (pose, centre))| CentreObservation::point(idx, *pose, *centre))
         .collect();
-    let minimum = minimise(observations.iter(), start)?;
+    let minimum = minimise(&observations.iter(), start)?;
     let variance_factor = mean_square_residual(&observations, &minimum.state);
     let stations = sweeps
         .iter()

@@ -48,7 +48,7 @@ pub(super) fn settle(
             .iter()
             .map(|observation| marginalised(observation, &state, &pose_noise))
             .collect::<Result<_, _>>()?;
-        let mut minimum = minimise(observations.iter(), state)?;
+        let mut minimum = minimise(&observations.iter(), state)?;
         let moved_mm = movement_mm(&state, &minimum.state);
         state = minimum.state;
         let settled = moved_mm < SETTLED_MM && (stated.is_some() || pass > LAST_NOISE_ESTIMATE);

@@ -140,7 +140,7 @@ impl Resolver<'_> {
             .collect();
         starts
             .iter()
-            .filter_map(|start| minimise(observations.iter(), reduced.state(start.flange_from_sensor)).ok())
+            .filter_map(|start| minimise(&observations.iter(), reduced.state(start.flange_from_sensor)).ok())
             .map(|found| {
                 let sides: Vec<Side> = self
                     .candidates

@@ -72,6 +72,7 @@ impl Watch for TerminalProgress {
 }
 
 /// Runs the command.
+#[must_use]
 pub fn run(args: &SolveArgs) -> ExitCode {
     let session = match session::load(&args.file) {
         Ok(session) => session,
