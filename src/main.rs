@@ -7,7 +7,10 @@ use handeye::cli::{self, Args};
 use handeye::ui;
 
 fn main() -> ExitCode {
-    let args = Args::parse();
+    let args = match Args::try_parse() {
+        Ok(args) => args,
+        Err(error) => return cli::usage_error(&error),
+    };
     match args.command {
         Some(command) => command.run(),
         None => match ui::run(ui::Start { file: args.file }) {

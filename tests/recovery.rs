@@ -2,7 +2,8 @@
 #![expect(clippy::expect_used, reason = "a test that finds nothing to check must fail")]
 
 use handeye::app::compare::distance_from_truth;
-use handeye::calibrate::{BallProblem, Method, Mount, SideChoice, Solution, SolveError, Warning, solve};
+use handeye::calibrate::verdict::judge;
+use handeye::calibrate::{BallProblem, Method, Mount, SideChoice, Solution, SolveError, Verdict, Warning, solve};
 use handeye::geometry::{Transform, Vec3, so3, stats};
 use handeye::session::{Session, ball_problem, measure};
 use handeye::simulate::{Dirt, SimulationOptions, simulate};
@@ -136,6 +137,61 @@ fn the_stated_uncertainty_is_that_of_the_errors() {
 }
 
 #[test]
+fn noise_of_the_orientation_acts_at_the_right_lever_for_both_mounts() {
+    for mount in [Mount::OnFlange, Mount::Fixed] {
+        let (mut errors, mut stated) = (Vec::new(), Vec::new());
+        for seed in 1..=20 {
+            let session = simulate(&SimulationOptions {
+                seed,
+                mount,
+                num_stations: 12,
+                position_std_mm: 0.001,
+                orientation_std_deg: 0.05,
+                ..small()
+            });
+            let solution = solve(&problem(&session), Method::BallBundle).expect("a solution");
+            let truth = session.truth.as_ref().expect("simulated");
+            errors.push(distance_from_truth(&solution, truth).workspace_point_mm);
+            stated.push(solution.uncertainty.expect("redundant").workspace_point_std_mm);
+        }
+        let ratio = stats::rms(errors) / stats::rms(stated);
+        // 20 sessions know a standard deviation to some 15 %.
+        assert!((0.55..1.45).contains(&ratio), "{mount:?}: errors over stated {ratio}");
+    }
+}
+
+#[test]
+fn a_wrong_radius_is_found_by_the_sweeps_and_never_called_good() {
+    for (radius_mm, is_wrong) in [(14.9, true), (15.0, false), (15.1, true)] {
+        let mut session = simulate(&SimulationOptions::default());
+        session.target = handeye::session::Target::Ball { radius_mm };
+        for method in [Method::BallMaxArc, Method::BallBundle] {
+            let solution = solve(&problem(&session), method).expect("a solution");
+            let found = solution.warnings.iter().find_map(|warning| match warning {
+                Warning::RadiusDisagrees { found_mm, .. } => Some(*found_mm),
+                _ => None,
+            });
+            assert_eq!(found.is_some(), is_wrong, "R = {radius_mm}: {:?}", solution.warnings);
+            // The steps say how large the ball is, to some hundredths of a millimetre.
+            assert!(found.is_none_or(|found| (found - 15.0).abs() < 0.03), "{found:?}");
+            assert_eq!(judge(&solution).0 == Verdict::Good, !is_wrong);
+        }
+    }
+}
+
+#[test]
+fn rotations_nearly_about_one_axis_name_that_axis() {
+    let session = simulate(&SimulationOptions { tilt_deg: 2.0, spin_deg: 90.0, ..small() });
+    let solution = solve(&problem(&session), Method::BallBundle).expect("a solution");
+    let axis = solution.warnings.iter().find_map(|warning| match warning {
+        Warning::NearlyOneAxis { axis_in_flange, .. } => Some(*axis_in_flange),
+        _ => None,
+    });
+    // The tool points down, so spinning it is about its own z.
+    assert!(axis.is_some_and(|[_, _, z]| z.abs() > 0.9), "{axis:?}");
+}
+
+#[test]
 fn dirt_does_not_reach_the_result() {
     for seed in 1..=3 {
         let session = simulate(&SimulationOptions {
@@ -175,9 +231,9 @@ fn one_to_three_stations_are_refused_by_name_and_four_carry_a_warning() {
                     assert!(
                         matches!(
                             error,
-                            SolveError::TooFewStations { found, needed: 4 }
+                            SolveError::TooFewStations { found, needed: 4, .. }
                             | SolveError::TooFewSweeps { found, needed: 4, .. }
-                            | SolveError::TooFewProfileStations { found, needed: 4 } if found == num_stations
+                            | SolveError::TooFewProfileStations { found, needed: 4, .. } if found == num_stations
                         ),
                         "{error}"
                     );
@@ -210,6 +266,7 @@ fn sections_larger_than_the_ball_are_flagged_and_do_not_stop_anything() {
     session.target = handeye::session::Target::Ball { radius_mm: 10.0 };
     let refusal = solve(&problem(&session), Method::BallFixedPoint).expect_err("no usable arc");
     assert!(matches!(refusal, SolveError::TooFewStations { found: 0, .. }), "{refusal}");
+    assert!(refusal.to_string().contains("Check the ball's radius"), "{refusal}");
 }
 
 #[test]

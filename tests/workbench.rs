@@ -106,3 +106,43 @@ fn a_file_that_cannot_be_opened_leaves_the_session_on_the_bench() {
     assert_eq!(notice.message, error.to_string());
     assert!(bench.workbench.document().is_some());
 }
+
+#[test]
+fn a_save_belongs_to_the_document_it_was_asked_for() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("first.json");
+    let mut bench = Bench::new();
+    bench.apply(Command::OpenSample(sample("clean-sweeps.json")));
+    // Two saves and another document, all before anything has ended.
+    bench.workbench.apply(Command::SaveAs(path.clone()));
+    bench.workbench.apply(Command::SaveAs(path.clone()));
+    bench.apply(Command::OpenSample(sample("one-bad-pose.json")));
+    let document = bench.workbench.document().expect("open");
+    assert_eq!(document.path, None);
+    assert_eq!(document.session.name, "One bad pose, simulated");
+    assert_eq!(session::load(&path).expect("saved").name, "Clean sweeps, simulated");
+}
+
+#[test]
+fn what_was_edited_while_a_file_was_read_is_not_thrown_away() {
+    let mut bench = Bench::new();
+    bench.apply(Command::OpenSample(sample("clean-sweeps.json")));
+    bench.workbench.apply(Command::OpenSample(sample("one-bad-pose.json")));
+    bench.apply(Command::SetStationEnabled { station_idx: 0, enabled: false });
+    let document = bench.workbench.document().expect("open");
+    assert_eq!(document.session.name, "Clean sweeps, simulated");
+    assert!(bench.workbench.notices().iter().any(|notice| notice.message.contains("was not opened")));
+}
+
+#[test]
+fn after_a_cancel_the_session_can_be_solved_again() {
+    let mut bench = Bench::new();
+    bench.workbench.apply(Command::OpenSample(sample("clean-sweeps.json")));
+    while bench.workbench.is_loading() {
+        bench.woken.recv().expect("workers wake the bench");
+        bench.workbench.poll();
+    }
+    bench.apply(Command::CancelSolve);
+    bench.apply(Command::Solve);
+    assert!(bench.workbench.results_are_current());
+}

@@ -35,6 +35,8 @@ pub enum Command {
     Undo,
     /// Brings back what was undone.
     Redo,
+    /// Solves the session as it is now; needed only after a cancel, as every edit solves by itself.
+    Solve,
     /// Stops the solver; the last results stay.
     CancelSolve,
     /// Removes a notice.

@@ -1,5 +1,6 @@
 //! Document, results, jobs and notices, changed only by commands and finished jobs.
 
+use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -14,6 +15,8 @@ use super::jobs::{JobOutcome, Slot, Wake};
 /// The open session.
 #[derive(Clone, Debug)]
 pub struct Document {
+    /// Tells this document from those opened before.
+    id: u64,
     /// The session as it is now.
     pub session: Arc<Session>,
     /// Its file; `None` for a sample or a new session.
@@ -28,7 +31,8 @@ pub struct Document {
 impl Document {
     fn new(session: Session, path: Option<PathBuf>, revision: u64) -> Self {
         let session = Arc::new(session);
-        Self { saved: Arc::clone(&session), session, path, revision, history: History::default() }
+        // Revisions are never used twice, so the first is as good a name as any.
+        Self { id: revision, saved: Arc::clone(&session), session, path, revision, history: History::default() }
     }
 
     /// Whether there are edits that no file holds.
@@ -99,6 +103,20 @@ pub struct Progress {
     pub total: usize,
 }
 
+/// A session on its way to a file: taken when it was asked for, whatever happens on the bench meanwhile.
+#[derive(Clone, Debug)]
+struct Save {
+    document_id: u64,
+    session: Arc<Session>,
+    path: PathBuf,
+}
+
+#[derive(Debug)]
+struct Loaded {
+    path: Option<PathBuf>,
+    session: Result<Session, SessionError>,
+}
+
 /// The state behind the window.
 pub struct Workbench {
     wake: Wake,
@@ -107,9 +125,11 @@ pub struct Workbench {
     notices: Vec<Notice>,
     last_revision: u64,
     last_notice_id: u64,
-    loading: Slot<(Option<PathBuf>, Result<Session, SessionError>)>,
-    saving: Slot<(PathBuf, Arc<Session>, Result<(), SessionError>)>,
-    save_queue: Vec<PathBuf>,
+    loading: Slot<Loaded>,
+    /// The revision on the bench when loading began.
+    revision_before_loading: Option<u64>,
+    saving: Slot<(Save, Result<(), SessionError>)>,
+    save_queue: VecDeque<Save>,
     solving: Slot<Result<Results, Cancelled>>,
 }
 
@@ -126,7 +146,8 @@ impl Workbench {
             last_notice_id: 0,
             loading: Slot::default(),
             saving: Slot::default(),
-            save_queue: Vec::new(),
+            revision_before_loading: None,
+            save_queue: VecDeque::new(),
             solving: Slot::default(),
         }
     }
@@ -170,6 +191,12 @@ impl Workbench {
         self.loading.is_running()
     }
 
+    /// Whether a session is on its way to its file.
+    #[must_use]
+    pub fn is_saving(&self) -> bool {
+        self.saving.is_running() || !self.save_queue.is_empty()
+    }
+
     /// Whether any work is under way in the background.
     #[must_use]
     pub const fn is_busy(&self) -> bool {
@@ -194,6 +221,7 @@ impl Workbench {
             }
             Command::Undo => self.step_history(History::undo),
             Command::Redo => self.step_history(History::redo),
+            Command::Solve => self.start_solving(),
             Command::CancelSolve => self.solving.cancel(),
             Command::DismissNotice(id) => self.notices.retain(|notice| notice.id != id),
         }
@@ -202,24 +230,26 @@ impl Workbench {
     /// Takes in the results of finished jobs. Answers whether anything changed.
     pub fn poll(&mut self) -> bool {
         let mut changed = false;
-        if let Some(outcome) = self.loading.poll() {
-            changed = true;
-            match outcome {
-                JobOutcome::Done((path, Ok(session))) => self.open_session(session, path),
-                JobOutcome::Done((_, Err(error))) => self.notify(NoticeKind::Error, error.to_string()),
-                broken => self.notify_broken("reading the file", &broken),
-            }
-        }
+        // Saves first: a file that arrives in the same turn takes the saved document off the bench.
         if let Some(outcome) = self.saving.poll() {
             changed = true;
             match outcome {
-                JobOutcome::Done((path, saved, Ok(()))) => self.note_saved(path, saved),
-                JobOutcome::Done((_, _, Err(error))) => self.notify(NoticeKind::Error, error.to_string()),
+                JobOutcome::Done((save, Ok(()))) => self.note_saved(save),
+                JobOutcome::Done((_, Err(error))) => self.notify(NoticeKind::Error, error.to_string()),
                 broken => self.notify_broken("saving", &broken),
             }
-            if !self.save_queue.is_empty() {
-                let next = self.save_queue.remove(0);
-                self.start_saving(next);
+            if let Some(next) = self.save_queue.pop_front() {
+                self.run_save(next);
+            }
+        }
+        if let Some(outcome) = self.loading.poll() {
+            changed = true;
+            match outcome {
+                JobOutcome::Done(Loaded { path, session: Ok(session) }) => self.take_loaded(session, path),
+                JobOutcome::Done(Loaded { session: Err(error), .. }) => {
+                    self.notify(NoticeKind::Error, error.to_string());
+                }
+                broken => self.notify_broken("reading the file", &broken),
             }
         }
         if let Some(outcome) = self.solving.poll() {
@@ -241,10 +271,28 @@ impl Workbench {
         self.start_solving();
     }
 
+    /// What was edited while the file was being read is not thrown away.
+    fn take_loaded(&mut self, session: Session, path: Option<PathBuf>) {
+        let revision = self.document.as_ref().map(|document| document.revision);
+        let is_edited = self.document.as_ref().is_some_and(Document::is_unsaved);
+        if is_edited && revision != self.revision_before_loading {
+            self.notify(
+                NoticeKind::Error,
+                format!(
+                    "\"{}\" was not opened: the session on the bench was edited while it was read. Save it, then open again",
+                    session.name
+                ),
+            );
+        } else {
+            self.open_session(session, path);
+        }
+    }
+
     fn start_loading(&mut self, path: PathBuf) {
+        self.revision_before_loading = self.document.as_ref().map(|document| document.revision);
         self.loading.start("load session", &self.wake, move |_| {
             let session = session::load(&path);
-            (Some(path), session)
+            Loaded { path: Some(path), session }
         });
     }
 
@@ -253,12 +301,15 @@ impl Workbench {
             self.notify(NoticeKind::Error, format!("there is no sample session number {sample_idx}"));
             return;
         };
-        self.loading.start("load sample", &self.wake, move |_| {
-            (None, session::parse(sample.json.as_bytes(), sample.file_name))
+        self.revision_before_loading = self.document.as_ref().map(|document| document.revision);
+        self.loading.start("load sample", &self.wake, move |_| Loaded {
+            path: None,
+            session: session::parse(sample.json.as_bytes(), sample.file_name),
         });
     }
 
     fn close_document(&mut self) {
+        self.loading.cancel();
         self.solving.cancel();
         self.document = None;
         self.results = None;
@@ -275,27 +326,32 @@ impl Workbench {
     }
 
     fn start_saving(&mut self, path: PathBuf) {
-        if self.saving.is_running() {
-            // A save is never dropped; the next one starts when this one has ended.
-            self.save_queue.push(path);
-            return;
-        }
         let Some(document) = &self.document else {
             self.notify(NoticeKind::Error, "there is no open session to save".to_owned());
             return;
         };
-        let snapshot = Arc::clone(&document.session);
+        let save = Save { document_id: document.id, session: Arc::clone(&document.session), path };
+        if self.saving.is_running() {
+            // A save is never dropped; the next one starts when this one has ended.
+            self.save_queue.push_back(save);
+        } else {
+            self.run_save(save);
+        }
+    }
+
+    fn run_save(&mut self, save: Save) {
         self.saving.start("save session", &self.wake, move |_| {
-            let outcome = session::save(&snapshot, &path);
-            (path, snapshot, outcome)
+            let outcome = session::save(&save.session, &save.path);
+            (save, outcome)
         });
     }
 
-    fn note_saved(&mut self, path: PathBuf, saved: Arc<Session>) {
-        self.notify(NoticeKind::Done, format!("saved to {}", path.display()));
-        if let Some(document) = &mut self.document {
-            document.saved = saved;
-            document.path = Some(path);
+    fn note_saved(&mut self, save: Save) {
+        self.notify(NoticeKind::Done, format!("saved to {}", save.path.display()));
+        // Another document may be on the bench by now; its file is another.
+        if let Some(document) = self.document.as_mut().filter(|document| document.id == save.document_id) {
+            document.saved = save.session;
+            document.path = Some(save.path);
         }
     }
 

@@ -2,37 +2,46 @@
 
 use thiserror::Error;
 
+use crate::fit::ArcRefusal;
+
 /// Why a method computed nothing. Everything short of that is a [`super::Warning`] in the solution.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SolveError {
     /// Nine unknowns need more than three points.
     #[error(
-        "found {found} usable station{plural}; at least {needed} with different orientations are needed",
-        plural = if *found == 1 { "" } else { "s" }
+        "found {found} usable station{plural}; at least {needed} with different orientations are needed{because}",
+        plural = plural(*found),
+        because = because(refusal.as_ref())
     )]
     TooFewStations {
         /// Stations that the method can use.
         found: usize,
         /// The least number that will do.
         needed: usize,
+        /// Why the first of the others cannot be used.
+        refusal: Option<ArcRefusal>,
     },
     /// The bundle needs the points, not reduced centres.
     #[error(
         "found {found} station{plural} with a usable profile; at least {needed} are needed, as this method works on the \
-         points of profiles",
-        plural = if *found == 1 { "" } else { "s" }
+         points of profiles{because}",
+        plural = plural(*found),
+        because = because(refusal.as_ref())
     )]
     TooFewProfileStations {
         /// Stations with a usable profile.
         found: usize,
         /// The least number that will do.
         needed: usize,
+        /// Why the first of the others cannot be used.
+        refusal: Option<ArcRefusal>,
     },
     /// A largest-arc method without steps to look at.
     #[error(
         "found {found} station{plural} with a sweep, and at least {needed} are needed: \
-         record each station with steps along the laser's normal, {steps} profiles or more",
-        plural = if *found == 1 { "" } else { "s" }
+         record each station with steps along the laser's normal, {steps} profiles or more{because}",
+        plural = plural(*found),
+        because = because(refusal.as_ref())
     )]
     TooFewSweeps {
         /// Stations with a usable sweep.
@@ -41,6 +50,8 @@ pub enum SolveError {
         needed: usize,
         /// Profiles that make a sweep.
         steps: usize,
+        /// Why the first of the others cannot be used.
+        refusal: Option<ArcRefusal>,
     },
     /// All orientations are the same, so a shift of the sensor cannot be told from a shift of the ball.
     #[error(
@@ -76,4 +87,12 @@ pub enum SolveError {
     /// No start led to a finite solution.
     #[error("the solver found no finite solution; check poses and units")]
     Diverged,
+}
+
+const fn plural(count: usize) -> &'static str {
+    if count == 1 { "" } else { "s" }
+}
+
+fn because(refusal: Option<&ArcRefusal>) -> String {
+    refusal.map_or_else(String::new, |refusal| format!(". A profile is left out because: {refusal}"))
 }

@@ -98,11 +98,9 @@ pub struct Station {
     pub captures: Vec<Capture>,
 }
 
-/// Noise, where it is known.
+/// Noise of the robot, where it is known. That of the sensor is measured from the residuals of its profiles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Noise {
-    /// Standard deviation of one profile point along the range axis, mm.
-    pub profile_std_mm: Option<f64>,
     /// Standard deviation of each coordinate of a reported position, mm.
     pub position_std_mm: Option<f64>,
     /// Standard deviation of a reported orientation about each axis, rad.
@@ -116,7 +114,7 @@ pub struct BallProblem {
     pub radius_mm: f64,
     /// Where the sensor is. For [`Mount::Fixed`] the captures hold the inverted poses.
     pub mount: Mount,
-    /// Noise, where it is known.
+    /// Noise of the robot, where it is known. That of the sensor is measured from the residuals of its profiles.
     pub noise: Noise,
     /// The distance along z for which the headline accuracy is stated, mm; without it, that of the balls seen.
     pub reference_distance_mm: Option<f64>,

@@ -29,9 +29,9 @@ pub struct PoseGeometry {
     /// Inverse of Σ `ÃᵀÃ`.
     ball_covariance: Mat3,
     /// Eigenvalues of Σ `ÃᵀÃ` / n, rising: mean squared rotation about the three axes, rad².
-    pub rotation_about_axes: [f64; 3],
-    /// The axis of the least rotation, in the (mean) flange frame.
-    pub weakest_axis_in_flange: Vec3,
+    pub axis_movements: [f64; 3],
+    /// The axis that the rotations move least, in the (mean) flange frame: the one they are about.
+    pub common_axis_in_flange: Vec3,
 }
 
 impl PoseGeometry {
@@ -58,18 +58,18 @@ impl PoseGeometry {
         let eigen = SymmetricEigen::new(spread);
         let mut order = [0, 1, 2];
         order.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
-        let rotation_about_axes = order.map(|idx| eigen.eigenvalues[idx] * scale);
-        let weakest_axis_in_flange = (mean_rotation_inverse * eigen.eigenvectors.column(order[0]))
+        let axis_movements = order.map(|idx| eigen.eigenvalues[idx] * scale);
+        let common_axis_in_flange = (mean_rotation_inverse * eigen.eigenvectors.column(order[0]))
             .try_normalize(1e-9)
             .unwrap_or_else(Vec3::zeros);
-        if rotation_about_axes[2] < NO_ROTATION {
+        if axis_movements[2] < NO_ROTATION {
             return Err(SolveError::NoRotation { span_deg: rotation_span(poses).to_degrees() });
         }
-        if rotation_about_axes[0] < NO_ROTATION {
+        if axis_movements[0] < NO_ROTATION {
             return Err(SolveError::RotationsAboutOneAxis {
-                axis_x: weakest_axis_in_flange.x,
-                axis_y: weakest_axis_in_flange.y,
-                axis_z: weakest_axis_in_flange.z,
+                axis_x: common_axis_in_flange.x,
+                axis_y: common_axis_in_flange.y,
+                axis_z: common_axis_in_flange.z,
             });
         }
         let ball_covariance = spread.try_inverse().ok_or(SolveError::Diverged)?;
@@ -79,8 +79,8 @@ impl PoseGeometry {
             mean_rotation_inverse,
             mean_offset,
             ball_covariance,
-            rotation_about_axes,
-            weakest_axis_in_flange,
+            axis_movements,
+            common_axis_in_flange,
         })
     }
 

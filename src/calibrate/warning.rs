@@ -19,12 +19,12 @@ pub enum Warning {
         /// A span that does, degrees.
         recommended_deg: f64,
     },
-    /// The rotations are almost about one axis.
+    /// The rotations are almost all about one axis.
     NearlyOneAxis {
-        /// How much smaller the rotations about the weakest axis are than those about the strongest.
+        /// How much smaller the rotations about the other axes are.
         ratio: f64,
-        /// The weak axis in the flange frame.
-        weak_axis_in_flange: [f64; 3],
+        /// The one axis, in the flange frame: along it sensor and ball are hardly told apart.
+        axis_in_flange: [f64; 3],
     },
     /// The other side of the ball fits about as well.
     SideAmbiguous {
@@ -53,7 +53,7 @@ pub enum Warning {
         /// Ball radius, mm.
         ball_radius_mm: f64,
     },
-    /// A profile without a usable arc was left out.
+    /// Profiles without a usable arc were left out.
     CaptureRefused {
         /// Station.
         label: String,
@@ -61,6 +61,8 @@ pub enum Warning {
         capture_idx: usize,
         /// Why.
         reason: ArcRefusal,
+        /// How many more were refused.
+        num_others: usize,
     },
     /// A whole station was left out.
     StationSkipped {
@@ -84,6 +86,15 @@ pub enum Warning {
         label: String,
         /// How far beyond the last step the peak lies, mm.
         beyond_mm: f64,
+    },
+    /// The sweeps fit another radius.
+    RadiusDisagrees {
+        /// Radius that the sweeps show, mm.
+        found_mm: f64,
+        /// Its standard deviation, mm.
+        std_mm: f64,
+        /// Radius in the session, mm.
+        ball_radius_mm: f64,
     },
     /// The recorded poses did not move as commanded.
     StepDiffersFromPose {
@@ -123,6 +134,7 @@ impl Warning {
             Self::StationSkipped { .. } => "station-skipped",
             Self::TravelOffNormal { .. } => "travel-off-normal",
             Self::PeakNotCovered { .. } => "peak-not-covered",
+            Self::RadiusDisagrees { .. } => "radius-disagrees",
             Self::StepDiffersFromPose { .. } => "step-differs-from-pose",
             Self::StationStandsOut { .. } => "station-stands-out",
             Self::NotConverged { .. } => "not-converged",
@@ -140,6 +152,9 @@ impl Warning {
                 | Self::LittleRotation { .. }
                 | Self::NearlyOneAxis { .. }
                 | Self::SideAmbiguous { .. }
+                | Self::BlindInY { .. }
+                | Self::RadiusDisagrees { .. }
+                | Self::ArcLargerThanBall { .. }
                 | Self::StationStandsOut { .. }
                 | Self::NotConverged { .. }
         )

@@ -1,13 +1,16 @@
 //! `handeye check`: is this file a session, and is anything odd about it?
 
 use std::fmt::Write as _;
-use std::io::{self, Write as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use crate::calibrate::{Method, Warning, solve};
 use crate::session::check::{Finding, findings};
 use crate::session::format::{Loaded, load_with_notes};
+use crate::session::{Session, ball_problem, measure};
 use crate::text::check::finding_message;
+use crate::text::warning_message;
+use crate::watch::Unwatched;
 
 use super::{EXIT_WRONG_INPUT, fail};
 
@@ -22,11 +25,10 @@ pub struct CheckArgs {
 #[must_use]
 pub fn run(args: &CheckArgs) -> ExitCode {
     match load_with_notes(&args.file) {
-        Ok(loaded) => {
-            // Whoever closed standard output early has seen enough.
-            let _ = io::stdout().write_all(listing(&loaded).as_bytes());
-            ExitCode::SUCCESS
-        }
+        Ok(loaded) => match super::print(&listing(&loaded)) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(exit_code) => exit_code,
+        },
         Err(error) => fail(EXIT_WRONG_INPUT, &error),
     }
 }
@@ -47,10 +49,32 @@ pub fn listing(loaded: &Loaded) -> String {
         // Writing to a string cannot fail.
         let _ = writeln!(listing, "{}: {}", finding.code(), finding_message(finding));
     }
-    if all.is_empty() {
+    let warnings = warnings_of_all_methods(session);
+    for warning in &warnings {
+        let _ = writeln!(listing, "{}: {}", warning.code(), warning_message(warning));
+    }
+    if all.is_empty() && warnings.is_empty() {
         listing.push_str("nothing odd found\n");
     }
     listing
+}
+
+/// What the methods would warn of, each code once: the arcs, the radius and the rotations show only when solved. Where no
+/// method runs, the missing stations are among the findings already.
+fn warnings_of_all_methods(session: &Session) -> Vec<Warning> {
+    let Ok(measured) = measure(session, None, &mut Unwatched) else { return Vec::new() };
+    let Ok(problem) = ball_problem(session, &measured) else { return Vec::new() };
+    let mut warnings: Vec<Warning> = Vec::new();
+    for solution in Method::ALL.into_iter().filter_map(|method| solve(&problem, method).ok()) {
+        for warning in solution.warnings {
+            // That a station has no sweep matters to one method only.
+            let is_said = warnings.iter().any(|known| known.code() == warning.code());
+            if !is_said && !matches!(warning, Warning::StationSkipped { .. }) {
+                warnings.push(warning);
+            }
+        }
+    }
+    warnings
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 //!
 //! Exit status: 0 done, 2 the input is wrong (one line on standard error), 3 nothing could be computed.
 
+use std::io::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -63,6 +64,35 @@ impl Command {
 
 /// Prints the one line that goes with a failure.
 pub fn fail(exit_code: u8, message: &dyn std::fmt::Display) -> ExitCode {
-    eprintln!("handeye: {message}");
+    // With nowhere to complain to, the exit status must do.
+    writeln!(std::io::stderr(), "handeye: {message}").ok();
     ExitCode::from(exit_code)
+}
+
+/// Prints what a command has to say. A reader that has seen enough (`| head`) is no failure.
+pub(crate) fn print(text: &str) -> Result<(), ExitCode> {
+    match std::io::stdout().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(fail(EXIT_NOTHING_COMPUTED, &format_args!("the output could not be written: {error}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Help and version as asked for; a wrong argument in one line, as every other refusal.
+#[must_use]
+pub fn usage_error(error: &clap::Error) -> ExitCode {
+    if !error.use_stderr() {
+        return match print(&error.render().to_string()) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(exit_code) => exit_code,
+        };
+    }
+    let text = error.render().to_string();
+    let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+    let said: Vec<&str> = lines.take_while(|line| !line.starts_with("Usage:")).collect();
+    let message = said.join(" ");
+    let message =
+        message.trim_start_matches("error: ").trim_end_matches("For more information, try '--help'.").trim_end();
+    fail(EXIT_WRONG_INPUT, &format_args!("{message} (see `handeye --help`)"))
 }

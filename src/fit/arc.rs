@@ -218,6 +218,9 @@ fn finish(
     kept: robust::Kept,
 ) -> Result<ArcFit, ArcRefusal> {
     let circle = fit.circle;
+    if kept.x_mm.len() < MIN_POINTS {
+        return Err(ArcRefusal::TooFewPoints { found: kept.x_mm.len(), needed: MIN_POINTS });
+    }
     if circle.radius_mm > limit_mm {
         return Err(ArcRefusal::LargerThanBall { found_mm: circle.radius_mm, ball_radius_mm: options.ball_radius_mm });
     }

@@ -32,6 +32,9 @@ pub enum ArcRefusal {
         /// The least number that will do.
         needed: usize,
     },
+    /// The target is something else.
+    #[error("the session's target is no ball, so no arc is looked for")]
+    NoBall,
     /// Nothing in the profile looks like a section of the ball.
     #[error(
         "no arc with a radius of up to {limit_mm:.2} mm found among {num_points} points. Check that the line crosses the ball"

@@ -2,6 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
+use crate::calibrate::verdict::judge;
 use crate::calibrate::{MethodResult, Mount, Solution, StationSolution, Uncertainty, Warning};
 use crate::geometry::{Frame, Transform, Vec3};
 use crate::session::Session;
@@ -49,6 +50,14 @@ fn solution_entry(session: &Session, solution: &Solution) -> Value {
             .map_or(Value::Null, |left_out| json!({ "rms": left_out.rms_mm, "max": left_out.max_mm })),
     );
     entry.insert("uncertainty".to_owned(), solution.uncertainty.as_ref().map_or(Value::Null, uncertainty));
+    let (verdict, reason) = judge(solution);
+    entry.insert(
+        "verdict".to_owned(),
+        json!({
+            "rating": text::verdict_id(verdict),
+            "reason": text::verdict_line(verdict, reason, &solution.warnings),
+        }),
+    );
     entry.insert("rotation_span_deg".to_owned(), json!(solution.rotation_span_rad.to_degrees()));
     entry.insert(
         "stations".to_owned(),

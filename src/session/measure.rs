@@ -5,7 +5,7 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use crate::calibrate::{self, BallProblem, Mount, Noise};
-use crate::fit::{ArcOptions, extract_arc};
+use crate::fit::{ArcFit, ArcOptions, ArcRefusal, extract_arc};
 use crate::geometry::{Profile, Transform};
 use crate::watch::{Cancelled, Watch};
 
@@ -72,7 +72,7 @@ pub fn measure(session: &Session, previous: Option<&Measured>, watch: &mut dyn W
                     .cloned()
                     .unwrap_or_else(|| MeasuredCapture {
                         profile: Some(Arc::clone(profile)),
-                        reading: match extract_arc(profile, &options) {
+                        reading: match found_arc(profile, &session.target, &options) {
                             Ok(arc) => calibrate::Reading::Arc(Arc::new(arc)),
                             Err(refusal) => calibrate::Reading::Refused(refusal),
                         },
@@ -82,6 +82,13 @@ pub fn measure(session: &Session, previous: Option<&Measured>, watch: &mut dyn W
         stations.push(captures);
     }
     Ok(Measured { options, stations })
+}
+
+fn found_arc(profile: &Profile, target: &Target, options: &ArcOptions) -> Result<ArcFit, ArcRefusal> {
+    match target {
+        Target::Ball { .. } => extract_arc(profile, options),
+        _ => Err(ArcRefusal::NoBall),
+    }
 }
 
 /// The problem posed by the enabled stations. For a fixed sensor every pose is inverted, see [`calibrate`].
@@ -129,7 +136,6 @@ pub fn ball_problem(session: &Session, measured: &Measured) -> Result<BallProble
         radius_mm,
         mount: session.mount,
         noise: Noise {
-            profile_std_mm: session.sensor.profile_std_mm,
             position_std_mm: session.robot.position_std_mm,
             orientation_std_rad: session.robot.orientation_std_deg.map(f64::to_radians),
         },

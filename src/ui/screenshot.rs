@@ -39,7 +39,9 @@ pub enum ScreenshotError {
 /// [`ScreenshotError`] if the session cannot be read or the picture not be written.
 pub fn screenshot(session: Option<&Path>, step: Step, size: [u32; 2], out: &Path) -> Result<(), ScreenshotError> {
     let image = render(session, step, size)?;
-    image.save(out).map_err(|source| ScreenshotError::Write { path: out.to_owned(), source })
+    image
+        .save_with_format(out, image::ImageFormat::Png)
+        .map_err(|source| ScreenshotError::Write { path: out.to_owned(), source })
 }
 
 /// The same picture, not written.

@@ -135,11 +135,11 @@ impl Found<'_> {
                 recommended_deg: RECOMMENDED_SPAN_DEG,
             });
         }
-        let [least, _, most] = self.poses.rotation_about_axes;
+        let [least, _, most] = self.poses.axis_movements;
         let ratio = (most / least).sqrt();
         if ratio > ONE_AXIS_RATIO {
             self.warnings
-                .push(Warning::NearlyOneAxis { ratio, weak_axis_in_flange: self.poses.weakest_axis_in_flange.into() });
+                .push(Warning::NearlyOneAxis { ratio, axis_in_flange: self.poses.common_axis_in_flange.into() });
         }
         if !self.minimum.converged {
             self.warnings.push(Warning::NotConverged { num_iterations: self.minimum.num_iterations });

@@ -17,6 +17,7 @@ use super::assemble::{Found, StationFacts, first_pose};
 use super::passes::settle;
 use super::pose_noise::station_variance_factor;
 use super::profile_sums::profile_sums;
+use super::refused::{first_refusal, refused_captures};
 use super::{MIN_STATIONS, fixed_point, max_arc};
 
 /// Noise below this (mm) is rounding; weights are taken as of this noise.
@@ -42,8 +43,9 @@ pub fn solve(problem: &BallProblem) -> Result<Solution, SolveError> {
     let poses_of_stations: Vec<Rigid> = stations.iter().map(|station| *first_pose(station)).collect();
     let poses = PoseGeometry::new(&poses_of_stations)?;
     let start = start(problem, &mut warnings)?;
-    let profiles = used_profiles(&stations, problem.radius_mm);
-    let settled = settle(|state| linearised(&profiles, state, problem.radius_mm), &problem.noise, start)?;
+    let profiles = used_profiles(&stations, problem);
+    let settled = settle(|state| linearised(&profiles, state, problem.radius_mm), problem, start)?;
+    warnings.extend(max_arc::radius_warning_at(problem, &settled.minimum.state));
     let variance_factor = station_variance_factor(&settled.observations, &settled.minimum.state, stations.len());
     let facts = stations
         .into_iter()
@@ -72,8 +74,13 @@ fn stations_with_profiles<'a>(
     let (used, skipped): (Vec<&Station>, Vec<&Station>) =
         problem.stations.iter().partition(|station| station.captures.iter().any(|capture| is_arc(&capture.reading)));
     if used.len() < MIN_STATIONS {
-        return Err(SolveError::TooFewProfileStations { found: used.len(), needed: MIN_STATIONS });
+        return Err(SolveError::TooFewProfileStations {
+            found: used.len(),
+            needed: MIN_STATIONS,
+            refusal: first_refusal(&problem.stations),
+        });
     }
+    warnings.extend(refused_captures(&problem.stations));
     warnings.extend(skipped.into_iter().map(|station| Warning::StationSkipped {
         label: station.label.clone(),
         found: 0,
@@ -99,12 +106,12 @@ fn start(problem: &BallProblem, warnings: &mut Vec<Warning>) -> Result<State, So
 /// [`SolveError`] with fewer than four stations with a profile, or if they leave a direction free.
 pub fn refine(problem: &BallProblem, start: State) -> Result<State, SolveError> {
     let stations = stations_with_profiles(problem, &mut Vec::new())?;
-    let profiles = used_profiles(&stations, problem.radius_mm);
-    let settled = settle(|state| linearised(&profiles, state, problem.radius_mm), &problem.noise, start)?;
+    let profiles = used_profiles(&stations, problem);
+    let settled = settle(|state| linearised(&profiles, state, problem.radius_mm), problem, start)?;
     Ok(settled.minimum.state)
 }
 
-fn used_profiles<'a>(stations: &[&'a Station], ball_radius_mm: f64) -> Vec<UsedProfile<'a>> {
+fn used_profiles<'a>(stations: &[&'a Station], problem: &BallProblem) -> Vec<UsedProfile<'a>> {
     let arcs = || {
         stations.iter().enumerate().flat_map(|(station_idx, station)| {
             station.captures.iter().filter_map(move |capture| match &capture.reading {
@@ -118,7 +125,7 @@ fn used_profiles<'a>(stations: &[&'a Station], ball_radius_mm: f64) -> Vec<UsedP
     arcs()
         .map(|(station, base_from_flange, arc)| {
             // Noise in the laser plane acts on |p − s| with the factor l/R.
-            let section_part = (arc.circle.radius_mm / ball_radius_mm).min(1.0);
+            let section_part = (arc.circle.radius_mm / problem.radius_mm).min(1.0);
             UsedProfile { station, base_from_flange, arc, weight: (section_part * point_std_mm).powi(-2) }
         })
         .collect()

@@ -138,7 +138,10 @@ pub(super) fn evaluated_sweep(
         .iter()
         .enumerate()
         .map(|(step, sweep_step)| {
-            let travel_mm = first_from_step(sweep, step, &state.flange_from_sensor).translation.y;
+            // From where the step sees the ball: the plain distance of the two sensors would carry the noise of the
+            // orientation at the lever from robot to sensor.
+            let frame = first_from_step(sweep, step, &state.flange_from_sensor);
+            let travel_mm = peak_mm - frame.inverse_transform_point(&curve.ball_in_sensor.into()).y;
             let section_radius_mm = sweep_step.arc.circle.radius_mm;
             let on_curve = (radius_mm * radius_mm - (travel_mm - peak_mm).powi(2)).max(0.0).sqrt();
             SweepPoint {
@@ -176,4 +179,30 @@ pub(super) fn evaluated_sweep(
 fn station_travel_angle(sweep: &StationSweep<'_>, laser_normal_in_flange: Vec3) -> f64 {
     let travel = travel_direction(std::slice::from_ref(sweep));
     travel.cross(&laser_normal_in_flange).norm().atan2(travel.dot(&laser_normal_in_flange).abs())
+}
+
+/// The ball's radius that the curve of a sweep shows by itself: l² + m² is a straight line over the travel m, whose height
+/// above its top's place is R². Mean over the sweeps and its standard deviation by their scatter.
+pub(super) fn radius_from_sweeps(sweeps: &[Sweep]) -> Option<(f64, f64)> {
+    let radii: Vec<f64> = sweeps.iter().filter_map(radius_from_curve).collect();
+    #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 sweeps")]
+    let count = radii.len() as f64;
+    let mean = radii.iter().sum::<f64>() / count;
+    let scatter = radii.iter().map(|radius| (radius - mean).powi(2)).sum::<f64>();
+    (radii.len() >= 3).then(|| (mean, (scatter / (count * (count - 1.0))).sqrt()))
+}
+
+fn radius_from_curve(sweep: &Sweep) -> Option<f64> {
+    #[expect(clippy::cast_precision_loss, reason = "a sweep has few steps")]
+    let scale = 1.0 / sweep.points.len() as f64;
+    let squares = || {
+        sweep.points.iter().map(|point| (point.travel_mm, point.section_radius_mm.powi(2) + point.travel_mm.powi(2)))
+    };
+    let mean_travel = squares().map(|(travel, _)| travel).sum::<f64>() * scale;
+    let mean_square = squares().map(|(_, square)| square).sum::<f64>() * scale;
+    let spread = squares().map(|(travel, _)| (travel - mean_travel).powi(2)).sum::<f64>();
+    let slope = squares().map(|(travel, square)| (travel - mean_travel) * (square - mean_square)).sum::<f64>() / spread;
+    let top = 0.5 * slope;
+    let radius_squared = mean_square - slope * mean_travel + top * top;
+    (radius_squared.is_finite() && radius_squared > 0.0).then(|| radius_squared.sqrt())
 }

@@ -13,6 +13,7 @@ use crate::geometry::{Rigid, Vec3, stats};
 
 use super::MIN_STATIONS;
 use super::assemble::{Found, StationFacts, first_pose};
+use super::refused::{first_refusal, refused_captures};
 use super::side::{SideCandidate, resolve_sides};
 
 /// Below this cost ratio the data hardly tell the sides apart.
@@ -26,6 +27,14 @@ struct Section<'a> {
     station: &'a Station,
     candidate: SideCandidate,
     std_mm: Option<Vec3>,
+}
+
+impl Section<'_> {
+    /// Whether the ball's centre is clearly off the laser plane; if not, the side does not matter and blindness is the
+    /// finding.
+    fn y_is_seen(&self) -> bool {
+        self.std_mm.is_none_or(|std| self.candidate.size_y_mm > 2.0 * std.y)
+    }
 }
 
 /// Solves by one section a station.
@@ -47,8 +56,13 @@ pub(super) fn find(problem: &BallProblem) -> Result<Found<'_>, SolveError> {
     let sections: Vec<Section<'_>> =
         problem.stations.iter().filter_map(|station| section(problem, station, &mut warnings)).collect();
     if sections.len() < MIN_STATIONS {
-        return Err(SolveError::TooFewStations { found: sections.len(), needed: MIN_STATIONS });
+        return Err(SolveError::TooFewStations {
+            found: sections.len(),
+            needed: MIN_STATIONS,
+            refusal: first_refusal(&problem.stations),
+        });
     }
+    warnings.extend(refused_captures(&problem.stations));
     let base_from_flange: Vec<Rigid> = sections.iter().map(|section| *first_pose(section.station)).collect();
     let candidates: Vec<SideCandidate> = sections.iter().map(|section| section.candidate).collect();
     let poses = PoseGeometry::new(&base_from_flange)?;
@@ -102,12 +116,8 @@ fn section<'a>(problem: &BallProblem, station: &'a Station, warnings: &mut Vec<W
             },
             std_mm: None,
         }),
-        Reading::Refused(reason) => {
-            warnings.push(Warning::CaptureRefused {
-                label: station.label.clone(),
-                capture_idx: 0,
-                reason: reason.clone(),
-            });
+        Reading::Refused(_) => {
+            warnings.push(Warning::StationSkipped { label: station.label.clone(), found: 0, needed: 1 });
             None
         }
         Reading::Arc(arc) => {
@@ -151,7 +161,9 @@ fn add_side_warning(sections: &[Section<'_>], cost_ratios: &[Option<f64>], warni
     let doubtful: Vec<(&str, f64)> = sections
         .iter()
         .zip(cost_ratios)
-        .filter_map(|(section, ratio)| ratio.filter(|r| *r < SIDE_RATIO).map(|r| (section.station.label.as_str(), r)))
+        .filter_map(|(section, ratio)| {
+            ratio.filter(|r| *r < SIDE_RATIO && section.y_is_seen()).map(|r| (section.station.label.as_str(), r))
+        })
         .collect();
     if !doubtful.is_empty() {
         warnings.push(Warning::SideAmbiguous {

@@ -8,16 +8,20 @@
 
 use crate::calibrate::observation::{CentreObservation, State};
 use crate::calibrate::rotation_start::PoseGeometry;
-use crate::calibrate::{BallProblem, Method, Solution, SolveError, Warning};
+use crate::calibrate::{BallProblem, Method, Solution, SolveError, Sweep, Warning};
 use crate::geometry::{Rigid, stats};
 
 use super::assemble::{Found, StationFacts};
-use super::curve::{evaluated_sweep, fit_curve, section_observation, section_residual};
+use super::curve::{evaluated_sweep, fit_curve, radius_from_sweeps, section_observation, section_residual};
 use super::passes::{Settled, settle};
 use super::pose_noise::station_variance_factor;
 use super::sweep::{StationSweep, step_warning, sweeps, travel_direction};
 use super::{fixed_point, max_arc_step};
 
+/// A radius this many standard deviations off ...
+const RADIUS_AT_STDS: f64 = 4.0;
+/// ... and by this part is worth a warning: 0.03 mm on a ball of 15 mm, several times the tolerance of a cheap one.
+const RADIUS_PART: f64 = 0.002;
 /// Travel may differ from the laser's normal by this, degrees, before the published method suffers visibly.
 const OFF_NORMAL_DEG: f64 = 1.0;
 
@@ -58,6 +62,8 @@ fn find(problem: &BallProblem) -> Result<Found<'_>, SolveError> {
         })
         .collect::<Result<Vec<_>, SolveError>>()?;
     add_sweep_warnings(&stations, &mut warnings);
+    let evaluated: Vec<Sweep> = stations.iter().filter_map(|facts| facts.sweep.clone()).collect();
+    warnings.extend(radius_warning(problem, &evaluated));
     let variance_factor = station_variance_factor(&found.observations, &found.minimum.state, sweeps.len());
     Ok(Found {
         method: Method::BallMaxArc,
@@ -73,6 +79,26 @@ fn find(problem: &BallProblem) -> Result<Found<'_>, SolveError> {
     })
 }
 
+/// Whether the sweeps of a problem, seen with a calibration, show another radius than the session says.
+pub(super) fn radius_warning_at(problem: &BallProblem, state: &State) -> Option<Warning> {
+    let sweeps = sweeps(problem, &mut Vec::new()).ok()?;
+    let direction = travel_direction(&sweeps);
+    let evaluated: Vec<Sweep> = sweeps
+        .iter()
+        .filter_map(|sweep| {
+            fit_curve(problem, sweep, state, 0.0).map(|curve| evaluated_sweep(problem, sweep, &curve, state, direction))
+        })
+        .collect();
+    radius_warning(problem, &evaluated)
+}
+
+fn radius_warning(problem: &BallProblem, sweeps: &[Sweep]) -> Option<Warning> {
+    let (found_mm, std_mm) = radius_from_sweeps(sweeps)?;
+    let difference_mm = (found_mm - problem.radius_mm).abs();
+    let is_wrong = difference_mm > RADIUS_AT_STDS * std_mm && difference_mm > RADIUS_PART * problem.radius_mm;
+    is_wrong.then_some(Warning::RadiusDisagrees { found_mm, std_mm, ball_radius_mm: problem.radius_mm })
+}
+
 /// A published stop that went astray must not spoil the better method: the fixed-point answer is tried as well.
 fn settle_from_best_start(problem: &BallProblem, sweeps: &[StationSweep<'_>]) -> Result<Settled, SolveError> {
     type Start = fn(&BallProblem) -> Result<State, SolveError>;
@@ -82,7 +108,7 @@ fn settle_from_best_start(problem: &BallProblem, sweeps: &[StationSweep<'_>]) ->
     let mut failure = SolveError::Diverged;
     for start in [max_arc_step::state as Start, fixed_point::state] {
         let Ok(start) = start(problem) else { continue };
-        match settle(|state| linearised(problem, sweeps, state), &problem.noise, start) {
+        match settle(|state| linearised(problem, sweeps, state), problem, start) {
             Ok(settled) => {
                 let residual_mm = rms_section_residual(problem, sweeps, &settled.minimum.state);
                 let fits = residual_mm < FITS_PART * problem.radius_mm;

@@ -12,6 +12,7 @@ mod curve;
 mod passes;
 mod pose_noise;
 mod profile_sums;
+mod refused;
 mod side;
 mod sweep;
 

@@ -2,7 +2,7 @@
 
 use crate::calibrate::observation::{CentreObservation, State};
 use crate::calibrate::solver::{Minimum, minimise};
-use crate::calibrate::{Noise, SolveError};
+use crate::calibrate::{BallProblem, SolveError};
 
 use super::pose_noise::{PoseNoise, marginalised};
 
@@ -32,10 +32,10 @@ pub(super) struct Settled {
 /// [`SolveError::Undetermined`] or [`SolveError::Diverged`], as the solver finds.
 pub(super) fn settle(
     linearised: impl Fn(&State) -> Vec<CentreObservation>,
-    stated_noise: &Noise,
+    problem: &BallProblem,
     start: State,
 ) -> Result<Settled, SolveError> {
-    let stated = PoseNoise::stated(stated_noise);
+    let stated = PoseNoise::stated(&problem.noise, problem.mount);
     let mut pose_noise = stated.unwrap_or(PoseNoise::NONE);
     let mut state = start;
     let mut latest = None;

@@ -4,7 +4,7 @@
 //! is known with (W⁻¹ + S)⁻¹ = W (I + S W)⁻¹. In this form a profile that is blind in a direction needs no inverse.
 
 use crate::calibrate::observation::{CentreObservation, State};
-use crate::calibrate::{Noise, SolveError};
+use crate::calibrate::{Mount, Noise, SolveError};
 use crate::geometry::so3::hat;
 use crate::geometry::{Mat3, Vec3};
 
@@ -13,21 +13,17 @@ use crate::geometry::{Mat3, Vec3};
 pub(super) struct PoseNoise {
     pub position_std_mm: f64,
     pub orientation_std_rad: f64,
+    /// Where the robot moves, which is what its orientation turns about.
+    pub mount: Mount,
 }
 
 impl PoseNoise {
     /// A perfect robot.
-    pub const NONE: Self = Self { position_std_mm: 0.0, orientation_std_rad: 0.0 };
+    pub const NONE: Self = Self { position_std_mm: 0.0, orientation_std_rad: 0.0, mount: Mount::OnFlange };
 
-    /// The noise that the user states, if any.
-    pub fn stated(noise: &Noise) -> Option<Self> {
-        if noise.position_std_mm.is_none() && noise.orientation_std_rad.is_none() {
-            return None;
-        }
-        Some(Self {
-            position_std_mm: noise.position_std_mm.unwrap_or(0.0),
-            orientation_std_rad: noise.orientation_std_rad.unwrap_or(0.0),
-        })
+    /// The noise that the user states, if all of it is stated; half of it would stand for a robot perfect in the other.
+    pub fn stated(noise: &Noise, mount: Mount) -> Option<Self> {
+        Some(Self { position_std_mm: noise.position_std_mm?, orientation_std_rad: noise.orientation_std_rad?, mount })
     }
 
     /// The noise, as a position noise, for which the profiles' centres scatter as much as they are expected to: the
@@ -37,7 +33,7 @@ impl PoseNoise {
         const LEAST_MM: f64 = 1e-6;
         /// Worse than this is no noise, mm.
         const MOST_MM: f64 = 30.0;
-        let noise = |position_std_mm: f64| Self { position_std_mm, orientation_std_rad: 0.0 };
+        let noise = |position_std_mm: f64| Self { position_std_mm, ..Self::NONE };
         // With S = τ² I every direction of a profile stands alone: eᵀ (W⁻¹ + S)⁻¹ e is Σ (vᵀ g)² / (λ + τ² λ²) over the
         // eigenvectors v of W, with e = W⁻¹ g.
         let directions: Vec<(f64, f64)> = observations
@@ -80,9 +76,20 @@ impl PoseNoise {
     /// The orientation acts with the lever from the flange to the ball.
     fn centre_covariance(&self, observation: &CentreObservation, state: &State) -> Mat3 {
         let position = Mat3::identity() * (self.position_std_mm * self.position_std_mm);
-        let ball_in_flange = observation.base_from_flange.inverse_transform_point(&state.ball_in_base.into()).coords;
-        let rotation = state.flange_from_sensor.rotation.to_rotation_matrix();
-        let lever = rotation.matrix().transpose() * hat(ball_in_flange);
+        let lever = match self.mount {
+            // exp(ω) at the flange turns what the sensor sees about the flange.
+            Mount::OnFlange => {
+                let ball_in_flange =
+                    observation.base_from_flange.inverse_transform_point(&state.ball_in_base.into()).coords;
+                let rotation = state.flange_from_sensor.rotation.to_rotation_matrix();
+                rotation.matrix().transpose() * hat(ball_in_flange)
+            }
+            // The poses are inverted: the ball is on the flange, at `ball_in_base`, and turns about its origin.
+            Mount::Fixed => {
+                let (_, sensor_from_base) = state.ball_in_sensor_and_rotation(&observation.base_from_flange);
+                sensor_from_base * hat(state.ball_in_base)
+            }
+        };
         position + lever * lever.transpose() * (self.orientation_std_rad * self.orientation_std_rad)
     }
 }

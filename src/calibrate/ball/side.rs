@@ -14,6 +14,8 @@ use crate::geometry::{Mat3, Rigid, Vec3};
 const ROUNDING: f64 = 1e-16;
 /// Beyond this many open stations pairs are left alone: with that many, single flips are enough.
 const MAX_PAIR_FLIPS: usize = 12;
+/// A residual of a hundredth of the sections' distance from the ball's centre: about 0.1 mm.
+const FITS_PART_SQUARED: f64 = 1e-4;
 /// Weight of y = 0 ± R/2 beside x and z, which are a hundred times better known.
 const WEIGHT_OF_Y: f64 = 1e-4;
 /// Rotations nearer than this are the same minimum.
@@ -94,7 +96,9 @@ pub(super) fn resolve_sides(
         for start in resolver.starts_without_y() {
             resolver.keep_new(&mut finals, start);
         }
-        // The mirror image of the truth is a minimum that no single flip leaves.
+    }
+    if candidates.iter().any(SideCandidate::is_open) {
+        // The mirror image of the truth is a minimum that no single flip leaves, and may fit nearly as well.
         for mirrored in finals.iter().map(|assignment| resolver.mirrored(assignment)).collect::<Vec<_>>() {
             resolver.keep_new(&mut finals, mirrored);
         }
@@ -159,7 +163,7 @@ impl Resolver<'_> {
     /// can come near.
     fn fits_well(&self, assignment: &Assignment) -> bool {
         let size: f64 = self.candidates.iter().map(|candidate| candidate.size_y_mm * candidate.size_y_mm).sum();
-        assignment.minimum.cost < 1e-3 * size
+        assignment.minimum.cost < FITS_PART_SQUARED * size
     }
 
     fn keep_new(&self, finals: &mut Vec<Assignment>, start: Assignment) {

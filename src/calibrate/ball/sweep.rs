@@ -1,10 +1,11 @@
 //! A station's sweep: the steps with a usable arc, and what both largest-arc methods share.
 
-use crate::calibrate::{BallProblem, Capture, Reading, SolveError, Station, Warning};
+use crate::calibrate::{BallProblem, Mount, Reading, SolveError, Station, Warning};
 use crate::fit::ArcFit;
 use crate::geometry::{Mat3, Rigid, Vec3};
 
 use super::MIN_STATIONS;
+use super::refused::{first_refusal, refused_captures};
 
 /// Three unknowns (the ball's centre) need more than one section; three show that the curve bends.
 pub(super) const MIN_STEPS: usize = 3;
@@ -46,10 +47,9 @@ pub(super) fn sweeps<'a>(
     let mut sweeps = Vec::with_capacity(problem.stations.len());
     let mut skipped = Vec::new();
     for station in &problem.stations {
-        let steps: Vec<SweepStep<'a>> = steps(station);
+        let steps: Vec<SweepStep<'a>> = steps(station, problem.mount);
         let travels = steps.iter().any(|step| step.travel_in_flange.norm() > MIN_TRAVEL_MM);
         if steps.len() >= MIN_STEPS && travels {
-            skipped.extend(refused(station));
             sweeps.push(StationSweep { station, first_pose: station.captures[0].base_from_flange.rigid(), steps });
         } else {
             skipped.push(Warning::StationSkipped {
@@ -60,53 +60,47 @@ pub(super) fn sweeps<'a>(
         }
     }
     if sweeps.len() < MIN_STATIONS {
-        return Err(SolveError::TooFewSweeps { found: sweeps.len(), needed: MIN_STATIONS, steps: MIN_STEPS });
+        return Err(SolveError::TooFewSweeps {
+            found: sweeps.len(),
+            needed: MIN_STATIONS,
+            steps: MIN_STEPS,
+            refusal: first_refusal(&problem.stations),
+        });
     }
+    warnings.extend(refused_captures(&problem.stations));
     warnings.append(&mut skipped);
     Ok(sweeps)
 }
 
-fn steps(station: &Station) -> Vec<SweepStep<'_>> {
+fn steps(station: &Station, mount: Mount) -> Vec<SweepStep<'_>> {
     let Some(first) = station.captures.first() else {
         return Vec::new();
     };
     let first_pose = first.base_from_flange.rigid();
-    let step = |(capture_idx, capture): (usize, &'_ Capture)| {
-        let base_from_flange = capture.base_from_flange.rigid();
-        (
-            capture_idx,
-            first_pose.rotation.inverse() * (base_from_flange.translation.vector - first_pose.translation.vector),
-            capture.commanded_travel_mm,
-        )
+    let travel_in_flange = |pose: &Rigid| match mount {
+        Mount::OnFlange => first_pose.rotation.inverse() * (pose.translation.vector - first_pose.translation.vector),
+        // The poses are inverted and the sensor stands still: the robot's own travel, turned round. Taken from the inverted
+        // translations it would carry the noise of the orientation at the lever of the whole arm.
+        Mount::Fixed => first_pose.inverse().translation.vector - pose.inverse().translation.vector,
     };
     station
         .captures
         .iter()
         .enumerate()
-        .filter_map(|(idx, capture)| match &capture.reading {
+        .filter_map(|(capture_idx, capture)| match &capture.reading {
             Reading::Arc(arc) => {
-                let (capture_idx, travel_in_flange, commanded_mm) = step((idx, capture));
+                let base_from_flange = capture.base_from_flange.rigid();
                 Some(SweepStep {
                     capture_idx,
-                    base_from_flange: capture.base_from_flange.rigid(),
+                    base_from_flange,
                     arc,
-                    travel_in_flange,
-                    commanded_mm,
+                    travel_in_flange: travel_in_flange(base_from_flange),
+                    commanded_mm: capture.commanded_travel_mm,
                 })
             }
             Reading::Refused(_) | Reading::Point(_) => None,
         })
         .collect()
-}
-
-/// One warning for the first profile of a sweep that was refused.
-fn refused(station: &Station) -> Option<Warning> {
-    station.captures.iter().enumerate().find_map(|(capture_idx, capture)| match &capture.reading {
-        Reading::Refused(reason) => {
-            Some(Warning::CaptureRefused { label: station.label.clone(), capture_idx, reason: reason.clone() })
-        }
-        Reading::Arc(_) | Reading::Point(_) => None,
-    })
 }
 
 /// The direction in the flange frame along which the sweeps travel, its sign as of the commanded steps where recorded.

@@ -1,11 +1,12 @@
 //! `handeye solve`: every method that the session's data allows, as a table or as the result file.
 
 use std::fmt::Write as _;
-use std::io::{IsTerminal as _, Write as _};
+use std::io::IsTerminal as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use crate::calibrate::{Method, MethodResult, solve_all};
 use crate::report::result_file::result_file;
@@ -24,7 +25,7 @@ pub struct SolveArgs {
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
     /// Run only this method; may be given several times
-    #[arg(long = "method", value_name = "ID", value_parser = parse_method)]
+    #[arg(long = "method", value_name = "ID", value_parser = method_parser())]
     pub methods: Vec<Method>,
     /// Print the result file (JSON) instead of tables
     #[arg(long)]
@@ -34,11 +35,9 @@ pub struct SolveArgs {
     pub paper_tables: bool,
 }
 
-fn parse_method(id: &str) -> Result<Method, String> {
-    Method::by_id(id).ok_or_else(|| {
-        let known: Vec<&str> = Method::ALL.iter().map(|method| method.id()).collect();
-        format!("known methods: {}", known.join(", "))
-    })
+fn method_parser() -> impl TypedValueParser<Value = Method> {
+    PossibleValuesParser::new(Method::ALL.map(Method::id))
+        .try_map(|id| Method::by_id(&id).ok_or_else(|| format!("no method is called {id}")))
 }
 
 /// Shows progress on a terminal and nowhere else.
@@ -102,11 +101,8 @@ pub fn run(args: &SolveArgs) -> ExitCode {
     } else {
         tables::tables(&session, &problem, &results)
     };
-    if let Err(error) = std::io::stdout().write_all(text.as_bytes()) {
-        // A reader that has seen enough (`| head`) is no failure.
-        if error.kind() != std::io::ErrorKind::BrokenPipe {
-            return fail(EXIT_NOTHING_COMPUTED, &format_args!("the result could not be printed: {error}"));
-        }
+    if let Err(exit_code) = super::print(&text) {
+        return exit_code;
     }
     exit_code(&results)
 }

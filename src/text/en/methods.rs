@@ -47,6 +47,16 @@ pub const fn verdict_name(verdict: Verdict) -> &'static str {
     }
 }
 
+/// The verdict in result files.
+#[must_use]
+pub const fn verdict_id(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Good => "good",
+        Verdict::Usable => "usable",
+        Verdict::NotUsable => "not-usable",
+    }
+}
+
 /// The verdict's shape, so that colour is never alone.
 #[must_use]
 pub const fn verdict_mark(verdict: Verdict) -> &'static str {

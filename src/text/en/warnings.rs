@@ -12,8 +12,8 @@ pub fn warning_message(warning: &Warning) -> String {
         Warning::LittleRotation { span_deg, recommended_deg } => format!(
             "The orientations differ by {span_deg:.1}° at most; below {recommended_deg:.0}° a small residual says little about the accuracy."
         ),
-        Warning::NearlyOneAxis { ratio, weak_axis_in_flange: [x, y, z] } => format!(
-            "The rotations are almost about one axis: about ({x:.2}, {y:.2}, {z:.2}) in the flange they are {ratio:.0} times smaller."
+        Warning::NearlyOneAxis { ratio, axis_in_flange: [x, y, z] } => format!(
+            "The rotations are almost all about one axis, ({x:.2}, {y:.2}, {z:.2}) in the flange: about others they are {ratio:.0} times smaller, so the sensor's place along it is poorly known."
         ),
         Warning::SideAmbiguous { labels, ratio } => format!(
             "Station{} {}: the side of the ball is uncertain, the other side costs only {ratio:.1} times as much.",
@@ -29,9 +29,17 @@ pub fn warning_message(warning: &Warning) -> String {
             "Station {label}, profile {}: the section radius {section_radius_mm:.3} mm is above the ball's {ball_radius_mm:.3} mm.",
             capture_idx + 1
         ),
-        Warning::CaptureRefused { label, capture_idx, reason } => {
-            format!("Station {label}, profile {} is left out: {reason}.", capture_idx + 1)
+        Warning::CaptureRefused { label, capture_idx, reason, num_others } => {
+            let others = match num_others {
+                0 => String::new(),
+                1 => " One more is left out.".to_owned(),
+                _ => format!(" {num_others} more are left out."),
+            };
+            format!("Station {label}, profile {} is left out: {reason}.{others}", capture_idx + 1)
         }
+        Warning::RadiusDisagrees { found_mm, std_mm, ball_radius_mm } => format!(
+            "The sweeps fit a ball of radius {found_mm:.3} ± {std_mm:.3} mm, the session says {ball_radius_mm:.3} mm."
+        ),
         Warning::StationSkipped { label, found, needed } => format!(
             "Station {label} is left out: it has {found} usable profile{}, this method needs {needed}.",
             if *found == 1 { "" } else { "s" }
@@ -60,12 +68,12 @@ pub const fn warning_remedy(warning: &Warning) -> &'static str {
     match warning {
         Warning::FewStations { .. } => "Add stations with other orientations.",
         Warning::LittleRotation { .. } => "Add stations tilted by ±20° or more about two axes.",
-        Warning::NearlyOneAxis { .. } => "Add stations tilted about the weak axis.",
+        Warning::NearlyOneAxis { .. } => "Add stations tilted about an axis across it.",
         Warning::SideAmbiguous { .. } => {
             "Set the side of this station by hand, or move its line further from the ball's centre."
         }
         Warning::BlindInY { .. } => {
-            "Use the whole-curve or the bundle method, or place the line nearer to 0.7 of the radius."
+            "Record a sweep across the ball at each station, or place the line so that the section is about 0.8 of the radius."
         }
         Warning::ArcLargerThanBall { .. } => "Check the ball's radius and the profile's scale.",
         Warning::CaptureRefused { .. } => "Look at the profile in Arcs; capture it again with the ball in view.",
@@ -74,6 +82,9 @@ pub const fn warning_remedy(warning: &Warning) -> &'static str {
             "Let the robot step along the calibrated laser normal; the whole-curve method allows for the angle."
         }
         Warning::PeakNotCovered { .. } => "Let the sweep run on until the arc has shrunk again.",
+        Warning::RadiusDisagrees { .. } => {
+            "Check the ball's radius in the session, and the scale of profiles and steps."
+        }
         Warning::StepDiffersFromPose { .. } => "Use the whole-curve method: it takes the real poses.",
         Warning::StationStandsOut { .. } => {
             "Check the pose and the profile of this station; un-tick it to see what changes."

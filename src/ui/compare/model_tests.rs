@@ -82,7 +82,7 @@ fn results() -> Vec<MethodResult> {
         ok(Method::BallFixedPoint, 0.3, 0.2),
         MethodResult {
             method: Method::BallMaxArcStep,
-            outcome: Err(SolveError::TooFewSweeps { found: 0, needed: 3, steps: 3 }),
+            outcome: Err(SolveError::TooFewSweeps { found: 0, needed: 3, steps: 3, refusal: None }),
         },
         ok(Method::BallMaxArc, 0.1, 0.05),
     ]
@@ -104,7 +104,7 @@ fn the_columns_keep_the_papers_order_and_say_why_one_is_empty() {
     let model = CompareModel::new(&session(), &results());
     let methods: Vec<Method> = model.columns.iter().map(|column| column.method).collect();
     assert_eq!(methods, [Method::BallFixedPoint, Method::BallMaxArc, Method::BallMaxArcStep]);
-    let reason = SolveError::TooFewSweeps { found: 0, needed: 3, steps: 3 }.to_string();
+    let reason = SolveError::TooFewSweeps { found: 0, needed: 3, steps: 3, refusal: None }.to_string();
     assert_eq!(model.columns[2].outcome.as_ref().expect_err("refused"), &reason);
 }
 

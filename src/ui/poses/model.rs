@@ -64,6 +64,7 @@ pub fn labels_of(warning: &Warning) -> &[String] {
         Warning::FewStations { .. }
         | Warning::LittleRotation { .. }
         | Warning::NearlyOneAxis { .. }
+        | Warning::RadiusDisagrees { .. }
         | Warning::NotConverged { .. } => &[],
     }
 }
