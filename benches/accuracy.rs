@@ -35,15 +35,15 @@ fn scenes() -> Vec<Scene> {
     vec![
         scene("10 stations x 21 steps x 800 points, robot 0.02 mm / 0.005°, sensor 0.01 mm", typical.clone()),
         scene(
-            "the same with a robot of 0.05 mm / 0.02°",
+            "the first with a robot of 0.05 mm / 0.02°",
             SimulationOptions { position_std_mm: 0.05, orientation_std_deg: 0.02, ..typical.clone() },
         ),
         scene(
-            "the same with table, spikes, holes and flank bias",
+            "the first with table, spikes, holes and flank bias",
             SimulationOptions { dirt: Dirt::all(), ..typical.clone() },
         ),
         scene(
-            "the same with travel 3° off the laser's normal",
+            "the first with travel 3° off the laser's normal",
             SimulationOptions { travel_off_normal_deg: 3.0, ..typical.clone() },
         ),
         scene("20 stations, one section each", SimulationOptions { num_stations: 20, num_steps: 1, ..typical }),

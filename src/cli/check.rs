@@ -49,23 +49,31 @@ pub fn listing(loaded: &Loaded) -> String {
         // Writing to a string cannot fail.
         let _ = writeln!(listing, "{}: {}", finding.code(), finding_message(finding));
     }
-    let warnings = warnings_of_all_methods(session);
+    let (warnings, failure) = outcome_of_all_methods(session);
     for warning in &warnings {
         let _ = writeln!(listing, "{}: {}", warning.code(), warning_message(warning));
     }
-    if all.is_empty() && warnings.is_empty() {
+    if let Some(error) = &failure {
+        let _ = writeln!(listing, "not-solvable: {error}");
+    }
+    if all.is_empty() && warnings.is_empty() && failure.is_none() {
         listing.push_str("nothing odd found\n");
     }
     listing
 }
 
-/// What the methods would warn of, each code once: the arcs, the radius and the rotations show only when solved. Where no
-/// method runs, the missing stations are among the findings already.
-fn warnings_of_all_methods(session: &Session) -> Vec<Warning> {
-    let Ok(measured) = measure(session, None, &mut Unwatched) else { return Vec::new() };
-    let Ok(problem) = ball_problem(session, &measured) else { return Vec::new() };
+/// What the methods would warn of, each code once, and why none of them runs, if so: arcs, radius and rotations show only
+/// when solved.
+fn outcome_of_all_methods(session: &Session) -> (Vec<Warning>, Option<String>) {
+    let Ok(measured) = measure(session, None, &mut Unwatched) else { return (Vec::new(), None) };
+    let problem = match ball_problem(session, &measured) {
+        Ok(problem) => problem,
+        Err(refusal) => return (Vec::new(), Some(refusal.to_string())),
+    };
+    let outcomes = Method::ALL.map(|method| solve(&problem, method));
+    let failure = outcomes[0].as_ref().err().filter(|_| outcomes.iter().all(Result::is_err)).map(ToString::to_string);
     let mut warnings: Vec<Warning> = Vec::new();
-    for solution in Method::ALL.into_iter().filter_map(|method| solve(&problem, method).ok()) {
+    for solution in outcomes.into_iter().flatten() {
         for warning in solution.warnings {
             // That a station has no sweep matters to one method only.
             let is_said = warnings.iter().any(|known| known.code() == warning.code());
@@ -74,7 +82,7 @@ fn warnings_of_all_methods(session: &Session) -> Vec<Warning> {
             }
         }
     }
-    warnings
+    (warnings, failure)
 }
 
 #[cfg(test)]

@@ -12,6 +12,8 @@ use crate::geometry::{Rigid, Transform, Vec3, stats};
 
 use super::RECOMMENDED_STATIONS;
 
+/// With five stations six numbers judge nine unknowns; fewer stations than this are said to be few.
+const FEW_BELOW: usize = 6;
 /// Below this rotation span the residual says little: 62° gave 0.8 mm between halves of real data, 20° gave 4 mm.
 const RECOMMENDED_SPAN_DEG: f64 = 40.0;
 /// Rotations this many times smaller about one axis than about another leave that direction weak.
@@ -126,7 +128,7 @@ impl Found<'_> {
 
     fn add_shared_warnings(&mut self, span_rad: f64, left_out: &[Option<f64>], in_sample: &[f64]) {
         let num_stations = self.stations.len();
-        if num_stations < super::super::validation::MIN_STATIONS {
+        if num_stations < FEW_BELOW {
             self.warnings.push(Warning::FewStations { num_stations, recommended: RECOMMENDED_STATIONS });
         }
         if span_rad.to_degrees() < RECOMMENDED_SPAN_DEG {
