@@ -77,12 +77,7 @@ fn hand_eye(criterion: &mut Criterion) {
                 let geometry = PoseGeometry::new(black_box(&poses)).expect("rotations");
                 let reduced = geometry.reduced(black_box(&centres));
                 let start = reduced.state(reduced.best_minimum().flange_from_sensor);
-                let observations: Vec<CentreObservation> = poses
-                    .iter()
-                    .zip(&centres)
-                    .enumerate()
-                    .map(|(idx, (pose, centre))| CentreObservation::point(idx, *pose, *centre))
-                    .collect();
+                let observations = CentreObservation::points(&poses, &centres);
                 minimise(&observations.iter(), start)
             });
         });

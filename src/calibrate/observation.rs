@@ -36,6 +36,17 @@ impl CentreObservation {
     pub fn point(station: usize, base_from_flange: Rigid, centre_in_sensor: Vec3) -> Self {
         Self { station, base_from_flange, centre_in_sensor, information: Mat3::identity(), pull: Vec3::zeros() }
     }
+
+    /// One measured centre a station, with unit weight.
+    #[must_use]
+    pub fn points(base_from_flange: &[Rigid], centres_in_sensor: &[Vec3]) -> Vec<Self> {
+        base_from_flange
+            .iter()
+            .zip(centres_in_sensor)
+            .enumerate()
+            .map(|(station, (pose, centre))| Self::point(station, *pose, *centre))
+            .collect()
+    }
 }
 
 /// The unknowns.

@@ -1,11 +1,10 @@
 //! What is odd about a session that is otherwise as the format has it: things to look at before solving.
 
+use crate::calibrate::ball::MIN_STATIONS;
 use crate::geometry::Rigid;
 
 use super::{Capture, Reading, Session, Station, Target};
 
-/// Fewer stations than this do not determine a calibration from a ball.
-pub const MIN_STATIONS: usize = 4;
 /// Poses nearer than this in position and ...
 pub const TWIN_DISTANCE_MM: f64 = 0.5;
 /// ... this in orientation say the same thing twice.

@@ -70,12 +70,7 @@ pub(super) fn find(problem: &BallProblem) -> Result<Found<'_>, SolveError> {
     let centres: Vec<Vec3> =
         candidates.iter().zip(&resolved.sides).map(|(candidate, side)| candidate.centre(*side)).collect();
     let start = poses.reduced(&centres).state(resolved.minimum.flange_from_sensor);
-    let observations: Vec<CentreObservation> = base_from_flange
-        .iter()
-        .zip(&centres)
-        .enumerate()
-        .map(|(idx, (pose, centre))| CentreObservation::point(idx, *pose, *centre))
-        .collect();
+    let observations = CentreObservation::points(&base_from_flange, &centres);
     let minimum = minimise(&observations.iter(), start)?;
     add_side_warning(&sections, &resolved.cost_ratios, &mut warnings);
     add_blind_warning(&sections, &mut warnings);

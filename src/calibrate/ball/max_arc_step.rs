@@ -67,12 +67,7 @@ fn find(problem: &BallProblem) -> Result<Found<'_>, SolveError> {
         .map(|(centres, minimum)| (centres, minimum.flange_from_sensor))
         .ok_or(SolveError::Diverged)?;
     let start = poses.reduced(&centres).state(rotation);
-    let observations: Vec<CentreObservation> = base_from_flange
-        .iter()
-        .zip(&centres)
-        .enumerate()
-        .map(|(idx, (pose, centre))| CentreObservation::point(idx, *pose, *centre))
-        .collect();
+    let observations = CentreObservation::points(&base_from_flange, &centres);
     let minimum = minimise(&observations.iter(), start)?;
     let variance_factor = mean_square_residual(&observations, &minimum.state);
     let stations = sweeps
