@@ -86,6 +86,8 @@ pub struct Notice {
     pub id: u64,
     /// How serious.
     pub kind: NoticeKind,
+    /// Whether it is about opening a file, and so belongs where the file was chosen.
+    pub is_of_opening: bool,
     /// The sentence.
     pub message: String,
 }
@@ -206,8 +208,11 @@ impl Workbench {
             changed = true;
             match outcome {
                 JobOutcome::Done((path, Ok(session))) => self.open_session(session, path),
-                JobOutcome::Done((_, Err(error))) => self.notify(NoticeKind::Error, error.to_string()),
-                broken => self.notify_broken("reading the file", &broken),
+                JobOutcome::Done((_, Err(error))) => self.notify_of_opening(error.to_string()),
+                broken => {
+                    self.notify_broken("reading the file", &broken);
+                    self.mark_newest_as_of_opening();
+                }
             }
         }
         if let Some(outcome) = self.saving.poll() {
@@ -235,6 +240,7 @@ impl Workbench {
 
     /// Puts a session on the bench and solves it.
     pub fn open_session(&mut self, session: Session, path: Option<PathBuf>) {
+        self.forget_errors();
         self.last_revision += 1;
         self.document = Some(Document::new(session, path, self.last_revision));
         self.results = None;
@@ -250,7 +256,7 @@ impl Workbench {
 
     fn open_sample(&mut self, sample_idx: usize) {
         let Some(sample) = session::samples::ALL.get(sample_idx) else {
-            self.notify(NoticeKind::Error, format!("there is no sample session number {sample_idx}"));
+            self.notify_of_opening(format!("there is no sample session number {sample_idx}"));
             return;
         };
         self.loading.start("load sample", &self.wake, move |_| {
@@ -292,6 +298,7 @@ impl Workbench {
     }
 
     fn note_saved(&mut self, path: PathBuf, saved: Arc<Session>) {
+        self.forget_errors();
         self.notify(NoticeKind::Done, format!("saved to {}", path.display()));
         if let Some(document) = &mut self.document {
             document.saved = saved;
@@ -348,7 +355,23 @@ impl Workbench {
 
     fn notify(&mut self, kind: NoticeKind, message: String) {
         self.last_notice_id += 1;
-        self.notices.push(Notice { id: self.last_notice_id, kind, message });
+        self.notices.push(Notice { id: self.last_notice_id, kind, is_of_opening: false, message });
+    }
+
+    fn notify_of_opening(&mut self, message: String) {
+        self.notify(NoticeKind::Error, message);
+        self.mark_newest_as_of_opening();
+    }
+
+    fn mark_newest_as_of_opening(&mut self) {
+        if let Some(notice) = self.notices.last_mut() {
+            notice.is_of_opening = true;
+        }
+    }
+
+    /// Something worked: what went wrong before it is history.
+    fn forget_errors(&mut self) {
+        self.notices.retain(|notice| notice.kind != NoticeKind::Error);
     }
 
     fn notify_broken<T>(&mut self, what: &str, outcome: &JobOutcome<T>) {

@@ -71,9 +71,9 @@ fn fraction(done: usize, total: usize) -> f32 {
     if total == 0 { 0.0 } else { done as f32 / total as f32 }
 }
 
-/// The notices that stand above the line: on the Session page, errors stand beside the path field instead.
+/// The notices that stand above the line: on the Session page, errors of opening stand beside the path field instead.
 pub fn notices_shown(workbench: &Workbench, step: Step) -> impl Iterator<Item = &Notice> {
-    workbench.notices().iter().filter(move |notice| step != Step::Session || notice.kind == NoticeKind::Done)
+    workbench.notices().iter().filter(move |notice| step != Step::Session || !notice.is_of_opening)
 }
 
 /// Draws these notices, newest last, each with a button to dismiss it.
