@@ -82,7 +82,8 @@ impl Shell {
             Some(Answer::Unavailable(Purpose::Save)) => {
                 let folder = std::env::current_dir().unwrap_or_default();
                 let suggestion = folder.join(self.suggested_name());
-                self.save_path = Some(SavePath::new(suggestion.display().to_string()));
+                let own_file = self.workbench.document().and_then(|document| document.path.clone());
+                self.save_path = Some(SavePath::new(suggestion.display().to_string(), own_file));
             }
             Some(Answer::Cancelled) => self.after_saving = None,
             None => {}
