@@ -244,3 +244,30 @@ fn without_a_session_both_panels_say_what_to_do() {
     Bench::empty(Shown::Arcs).harness().get_by_label(arcs_words::NO_SESSION);
     Bench::empty(Shown::Compare).harness().get_by_label(compare_words::NO_SESSION);
 }
+
+#[test]
+fn the_view_of_a_profile_is_toggled_and_changes_nothing_else() {
+    let mut harness = Bench::with(Shown::Arcs, sample("dirty-profiles.json")).harness();
+    for name in [arcs_words::WHOLE_PROFILE, arcs_words::ARC_ONLY] {
+        harness.get_by_label(name).click();
+        harness.run_steps(3);
+        harness.get_by_label(name);
+    }
+    assert!(harness.state().commands.is_empty());
+    assert_eq!(selected(&harness), (0, 0));
+}
+
+#[test]
+fn the_verdict_names_its_method() {
+    let harness = Bench::with(Shown::Compare, sample("clean-sweeps.json")).harness();
+    harness.get_by_label(&compare_words::judged_method(method_short_name(Method::BallBundle), true));
+    harness.get_by_label(&compare_words::headline("80"));
+}
+
+#[test]
+fn without_a_stated_distance_the_verdict_says_where_its_point_is() {
+    let session = sample("lin-mu-2019-table-1.json");
+    assert!(session.sensor.reference_distance_mm.is_none());
+    let harness = Bench::with(Shown::Compare, session).harness();
+    harness.get_by_label_contains("a point amid the balls seen, z = ");
+}
