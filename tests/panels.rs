@@ -244,3 +244,77 @@ fn without_a_session_both_panels_say_what_to_do() {
     Bench::empty(Shown::Arcs).harness().get_by_label(arcs_words::NO_SESSION);
     Bench::empty(Shown::Compare).harness().get_by_label(compare_words::NO_SESSION);
 }
+
+#[test]
+fn the_view_of_a_profile_is_toggled_and_changes_nothing_else() {
+    let mut harness = Bench::with(Shown::Arcs, sample("dirty-profiles.json")).harness();
+    for name in [arcs_words::WHOLE_PROFILE, arcs_words::ARC_ONLY] {
+        harness.get_by_label(name).click();
+        harness.run_steps(3);
+        harness.get_by_label(name);
+    }
+    assert!(harness.state().commands.is_empty());
+    assert_eq!(selected(&harness), (0, 0));
+}
+
+#[test]
+fn the_verdict_names_its_method() {
+    let harness = Bench::with(Shown::Compare, sample("clean-sweeps.json")).harness();
+    harness.get_by_label(&compare_words::judged_method(method_short_name(Method::BallBundle), true));
+    harness.get_by_label(&compare_words::headline("80"));
+}
+
+#[test]
+fn without_a_stated_distance_the_verdict_says_where_its_point_is() {
+    let session = sample("lin-mu-2019-table-1.json");
+    assert!(session.sensor.reference_distance_mm.is_none());
+    let harness = Bench::with(Shown::Compare, session).harness();
+    harness.get_by_label_contains("a point amid the balls seen, z = ");
+}
+
+/// The window's own software renderer, so that pictures need no graphics driver and are the same on every machine.
+#[derive(Default)]
+struct Software(ui::software_renderer::SoftwareRenderer);
+
+impl egui_kittest::TestRenderer for Software {
+    fn handle_delta(&mut self, delta: &mut egui::TexturesDelta) {
+        self.0.update_textures(delta);
+    }
+
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the size of a small picture")]
+    fn render(&mut self, ctx: &egui::Context, output: &egui::FullOutput) -> Result<image::RgbaImage, String> {
+        let scale = output.pixels_per_point;
+        let size = ctx.content_rect().size() * scale;
+        let primitives = ctx.tessellate(output.shapes.clone(), scale);
+        Ok(self.0.paint(&primitives, scale, [size.x.round() as u32, size.y.round() as u32]))
+    }
+}
+
+fn pictured(shown: Shown, file_name: &str, size: [f32; 2]) -> Harness<'static, Bench> {
+    let bench = Bench::with(shown, sample(file_name));
+    let mut harness = Harness::builder()
+        .with_size(size)
+        .renderer(Software::default())
+        .with_theme(egui::Theme::Light)
+        .with_context_setup(ui::theme::install)
+        .build_ui_state(Bench::ui, bench);
+    harness.run_steps(6);
+    harness
+}
+
+#[test]
+fn the_whole_profile_looks_as_it_did() {
+    let mut arcs = pictured(Shown::Arcs, "dirty-profiles.json", [800.0, 520.0]);
+    arcs.get_by_label(arcs_words::WHOLE_PROFILE).click();
+    for _ in 0..2 {
+        arcs.key_press(Key::ArrowDown);
+        arcs.run_steps(2);
+    }
+    arcs.run_steps(4);
+    arcs.snapshot("arcs_whole_profile");
+}
+
+#[test]
+fn the_narrow_comparison_looks_as_it_did() {
+    pictured(Shown::Compare, "lin-mu-2019-table-1.json", [532.0, 420.0]).snapshot("compare_narrow");
+}

@@ -11,6 +11,7 @@ use handeye::app::{Command, NoticeKind, Workbench};
 use handeye::session::{self, samples};
 use handeye::text::start::{open_sample, sample_lesson};
 use handeye::text::{poses as pose_words, shell as shell_words, start as start_words};
+use handeye::ui::dialogs::{SavePath, SavePathAnswer};
 use handeye::ui::poses::panel::{self as poses_panel, PosesState};
 use handeye::ui::{self, PanelContext, Selection, Start, Step, Window};
 
@@ -276,4 +277,72 @@ fn pictures_of_all_steps_are_drawn_without_a_display() {
         let distinct: std::collections::HashSet<_> = pixels.iter().collect();
         assert!(distinct.len() > 50, "{step:?} shows text and colours");
     }
+}
+
+/// A question for a path, and what was answered.
+struct SaveBench {
+    question: SavePath,
+    answers: Vec<SavePathAnswer>,
+}
+
+fn save_question(path: &Path, own_file: Option<&Path>) -> Harness<'static, SaveBench> {
+    let question = SavePath::new(path.display().to_string(), own_file.map(Path::to_owned));
+    let mut harness = Harness::builder().with_size(SIZE).with_context_setup(ui::theme::install).build_ui_state(
+        |ui, bench: &mut SaveBench| bench.answers.extend(bench.question.ask(&ui.ctx().clone())),
+        SaveBench { question, answers: Vec::new() },
+    );
+    harness.run_steps(3);
+    harness.get_by_label(shell_words::SAVE).click();
+    harness.run_steps(3);
+    harness
+}
+
+#[test]
+fn another_file_is_replaced_only_after_a_question() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("other.json");
+    std::fs::write(&path, "{}").expect("written");
+    let mut harness = save_question(&path, None);
+    assert!(harness.state().answers.is_empty(), "nothing is written unasked");
+    harness.get_by_label(shell_words::CANCEL).click();
+    harness.run_steps(3);
+    harness.get_by_label(shell_words::FILE_PATH);
+    assert!(harness.state().answers.is_empty(), "back to the path");
+    harness.get_by_label(shell_words::SAVE).click();
+    harness.run_steps(3);
+    harness.get_by_label(shell_words::REPLACE).click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().answers, [SavePathAnswer::Save(path)]);
+}
+
+#[test]
+fn a_new_file_and_the_sessions_own_are_written_unasked() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("own.json");
+    assert_eq!(save_question(&path, None).state().answers, [SavePathAnswer::Save(path.clone())]);
+    std::fs::write(&path, "{}").expect("written");
+    assert_eq!(save_question(&path, Some(&path)).state().answers, [SavePathAnswer::Save(path)]);
+}
+
+#[test]
+fn an_error_of_opening_goes_once_something_opens() {
+    let mut harness = window();
+    harness.state_mut().shell_mut().request(Command::Open("/nowhere/at-all.json".into()));
+    settle(&mut harness);
+    assert!(workbench(&harness).notices().iter().all(|notice| notice.is_of_opening));
+    assert_eq!(workbench(&harness).notices().len(), 1);
+    click(&mut harness, &open_sample(sample_lesson("few-rotations.json").0));
+    assert!(workbench(&harness).notices().is_empty());
+}
+
+#[test]
+fn ctrl_y_brings_back_what_was_undone() {
+    let mut harness = window_with("few-rotations.json");
+    click(&mut harness, Step::Poses.name());
+    click(&mut harness, &pose_words::use_station("2"));
+    click(&mut harness, shell_words::UNDO);
+    assert!(is_enabled(&harness, 1));
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Y);
+    settle(&mut harness);
+    assert!(!is_enabled(&harness, 1));
 }

@@ -63,6 +63,9 @@ pub fn maximum_error_mm(solution: &Solution) -> f64 {
     solution.stations.iter().map(|station| station.error_from_first_mm.amax()).fold(0.0, f64::max)
 }
 
+/// Maximum errors that differ by no more than this, percent, are alike: chance of the stations decides.
+pub const ALIKE_WITHIN_PERCENT: f64 = 5.0;
+
 /// By how much one method's maximum error is below another's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Improvement {
@@ -81,6 +84,12 @@ impl Improvement {
     #[must_use]
     pub fn percent(&self) -> Option<f64> {
         (self.baseline_error_mm > 0.0).then(|| (self.error_mm / self.baseline_error_mm - 1.0) * 100.0)
+    }
+
+    /// Whether the two errors are too near to each other for either method to be called better.
+    #[must_use]
+    pub fn is_alike(&self) -> bool {
+        self.percent().is_some_and(|percent| percent.abs() <= ALIKE_WITHIN_PERCENT)
     }
 }
 
@@ -257,6 +266,8 @@ mod tests {
         };
         // The paper's own −61.4 %.
         assert!((improvement.percent().expect("a baseline") + 61.4).abs() < 0.05);
+        assert!(!improvement.is_alike());
+        assert!(Improvement { error_mm: 0.2131, ..improvement }.is_alike(), "+1 % is nothing");
         assert_eq!(Improvement { baseline_error_mm: 0.0, ..improvement }.percent(), None);
     }
 }

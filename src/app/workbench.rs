@@ -90,6 +90,8 @@ pub struct Notice {
     pub id: u64,
     /// How serious.
     pub kind: NoticeKind,
+    /// Whether it is about opening a file, and so belongs where the file was chosen.
+    pub is_of_opening: bool,
     /// The sentence.
     pub message: String,
 }
@@ -246,10 +248,11 @@ impl Workbench {
             changed = true;
             match outcome {
                 JobOutcome::Done(Loaded { path, session: Ok(session) }) => self.take_loaded(session, path),
-                JobOutcome::Done(Loaded { session: Err(error), .. }) => {
-                    self.notify(NoticeKind::Error, error.to_string());
+                JobOutcome::Done(Loaded { session: Err(error), .. }) => self.notify_of_opening(error.to_string()),
+                broken => {
+                    self.notify_broken("reading the file", &broken);
+                    self.mark_newest_as_of_opening();
                 }
-                broken => self.notify_broken("reading the file", &broken),
             }
         }
         if let Some(outcome) = self.solving.poll() {
@@ -265,6 +268,7 @@ impl Workbench {
 
     /// Puts a session on the bench and solves it.
     pub fn open_session(&mut self, session: Session, path: Option<PathBuf>) {
+        self.forget_errors();
         self.last_revision += 1;
         self.document = Some(Document::new(session, path, self.last_revision));
         self.results = None;
@@ -276,13 +280,10 @@ impl Workbench {
         let revision = self.document.as_ref().map(|document| document.revision);
         let is_edited = self.document.as_ref().is_some_and(Document::is_unsaved);
         if is_edited && revision != self.revision_before_loading {
-            self.notify(
-                NoticeKind::Error,
-                format!(
+            self.notify_of_opening(format!(
                     "\"{}\" was not opened: the session on the bench was edited while it was read. Save it, then open again",
                     session.name
-                ),
-            );
+            ));
         } else {
             self.open_session(session, path);
         }
@@ -298,7 +299,7 @@ impl Workbench {
 
     fn open_sample(&mut self, sample_idx: usize) {
         let Some(sample) = session::samples::ALL.get(sample_idx) else {
-            self.notify(NoticeKind::Error, format!("there is no sample session number {sample_idx}"));
+            self.notify_of_opening(format!("there is no sample session number {sample_idx}"));
             return;
         };
         self.revision_before_loading = self.document.as_ref().map(|document| document.revision);
@@ -347,6 +348,7 @@ impl Workbench {
     }
 
     fn note_saved(&mut self, save: Save) {
+        self.forget_errors();
         self.notify(NoticeKind::Done, format!("saved to {}", save.path.display()));
         // Another document may be on the bench by now; its file is another.
         if let Some(document) = self.document.as_mut().filter(|document| document.id == save.document_id) {
@@ -404,7 +406,23 @@ impl Workbench {
 
     fn notify(&mut self, kind: NoticeKind, message: String) {
         self.last_notice_id += 1;
-        self.notices.push(Notice { id: self.last_notice_id, kind, message });
+        self.notices.push(Notice { id: self.last_notice_id, kind, is_of_opening: false, message });
+    }
+
+    fn notify_of_opening(&mut self, message: String) {
+        self.notify(NoticeKind::Error, message);
+        self.mark_newest_as_of_opening();
+    }
+
+    fn mark_newest_as_of_opening(&mut self) {
+        if let Some(notice) = self.notices.last_mut() {
+            notice.is_of_opening = true;
+        }
+    }
+
+    /// Something worked: what went wrong before it is history.
+    fn forget_errors(&mut self) {
+        self.notices.retain(|notice| notice.kind != NoticeKind::Error);
     }
 
     fn notify_broken<T>(&mut self, what: &str, outcome: &JobOutcome<T>) {

@@ -53,7 +53,10 @@ pub fn listing(loaded: &Loaded) -> String {
     for warning in &warnings {
         let _ = writeln!(listing, "{}: {}", warning.code(), warning_message(warning));
     }
-    if let Some(error) = &failure {
+    // That stations are missing is said already.
+    let stations_missing =
+        all.iter().any(|finding| matches!(finding, Finding::NoStations | Finding::FewStations { .. }));
+    if let Some(error) = failure.as_ref().filter(|_| !stations_missing) {
         let _ = writeln!(listing, "not-solvable: {error}");
     }
     if all.is_empty() && warnings.is_empty() && failure.is_none() {

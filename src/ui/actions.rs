@@ -93,6 +93,9 @@ impl Action {
     }
 }
 
+/// What other programs use for redo works as well.
+pub const OTHER_REDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Y);
+
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// The actions whose keys were pressed in this frame.
@@ -101,7 +104,9 @@ pub fn pressed(ctx: &egui::Context, workbench: &Workbench) -> Vec<Action> {
     let mut pressed: Vec<Action> = WITH_SHORTCUT
         .into_iter()
         .filter(|action| {
-            action.shortcut().is_some_and(|shortcut| ctx.input_mut(|input| input.consume_shortcut(&shortcut)))
+            let other = (*action == Action::Redo).then_some(OTHER_REDO);
+            let mut shortcuts = action.shortcut().into_iter().chain(other);
+            ctx.input_mut(|input| shortcuts.any(|shortcut| input.consume_shortcut(&shortcut)))
         })
         .filter(|action| action.refusal(workbench).is_none())
         .collect();

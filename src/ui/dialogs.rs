@@ -1,13 +1,13 @@
 //! Questions and windows over the panels: unsaved changes, a path to save to, help.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use egui::{Context, Frame, Grid, Id, Key, Modal, TextEdit, Ui, WidgetInfo};
 
 use crate::app::Workbench;
 use crate::text::shell as words;
 
-use super::actions::Action;
+use super::actions::{Action, OTHER_REDO};
 use super::{theme, widgets};
 
 /// Width of a question, points.
@@ -64,6 +64,8 @@ fn question_heading(ui: &mut Ui, text: &str) {
 #[derive(Clone, Debug)]
 pub struct SavePath {
     text: String,
+    own_file: Option<PathBuf>,
+    to_replace: Option<PathBuf>,
     is_new: bool,
 }
 
@@ -77,14 +79,38 @@ pub enum SavePathAnswer {
 }
 
 impl SavePath {
-    /// Starts with a suggestion.
+    /// Starts with a suggestion; `own_file` is the document's, which is replaced without a question.
     #[must_use]
-    pub const fn new(suggestion: String) -> Self {
-        Self { text: suggestion, is_new: true }
+    pub const fn new(suggestion: String, own_file: Option<PathBuf>) -> Self {
+        Self { text: suggestion, own_file, to_replace: None, is_new: true }
     }
 
-    /// Asks for the path.
+    /// Asks for the path, and again before another file is replaced.
     pub fn ask(&mut self, ctx: &Context) -> Option<SavePathAnswer> {
+        if let Some(path) = self.to_replace.clone() {
+            let is_agreed = ask_replace(ctx, &path)?;
+            self.to_replace = None;
+            self.is_new = true;
+            return is_agreed.then_some(SavePathAnswer::Save(path));
+        }
+        let answer = self.ask_path(ctx)?;
+        match answer {
+            SavePathAnswer::Save(path) if path.exists() && !self.is_own_file(&path) => {
+                self.to_replace = Some(path);
+                ctx.request_repaint();
+                None
+            }
+            answer => Some(answer),
+        }
+    }
+
+    fn is_own_file(&self, path: &Path) -> bool {
+        // Two spellings may name the same file.
+        let resolved = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        self.own_file.as_deref().is_some_and(|own_file| resolved(own_file) == resolved(path))
+    }
+
+    fn ask_path(&mut self, ctx: &Context) -> Option<SavePathAnswer> {
         let mut answer = None;
         let response = modal(ctx, "save as").show(ctx, |ui| {
             question_heading(ui, words::SAVE_AS_TITLE);
@@ -117,6 +143,29 @@ impl SavePath {
     }
 }
 
+/// Asks whether a file that exists is to be replaced.
+fn ask_replace(ctx: &Context, path: &Path) -> Option<bool> {
+    let mut answer = None;
+    let response = modal(ctx, "replace file").show(ctx, |ui| {
+        question_heading(ui, words::REPLACE_TITLE);
+        ui.add(egui::Label::new(path.display().to_string()).wrap());
+        ui.label(theme::dim(ui, words::REPLACE_HINT));
+        ui.add_space(16.0);
+        ui.horizontal(|ui| {
+            if ui.button(words::REPLACE).clicked() {
+                answer = Some(true);
+            }
+            if ui.button(words::CANCEL).clicked() {
+                answer = Some(false);
+            }
+        });
+    });
+    if response.should_close() {
+        answer = answer.or(Some(false));
+    }
+    answer
+}
+
 /// Shows the shortcuts and what this program is; clears `open` when closed.
 pub fn help(ctx: &Context, workbench: &Workbench, open: &mut bool) {
     if !*open {
@@ -136,12 +185,24 @@ pub fn help(ctx: &Context, workbench: &Workbench, open: &mut bool) {
                 Action::Help,
             ] {
                 if let Some(shortcut) = action.shortcut() {
-                    key_row(ui, &ctx.format_shortcut(&shortcut), &action.label(workbench));
+                    let mut keys = ctx.format_shortcut(&shortcut);
+                    if action == Action::Redo {
+                        keys = words::either_key(&keys, &ctx.format_shortcut(&OTHER_REDO));
+                    }
+                    key_row(ui, &keys, &action.label(workbench));
                 }
             }
             key_row(ui, "1 2 3 4", words::KEYS_RAIL);
             key_row(ui, "↑ ↓", words::KEYS_LIST);
+            key_row(ui, "← →", words::KEYS_STEPS);
+            key_row(ui, words::TAB, words::KEYS_TAB);
+            key_row(ui, words::SPACE, words::KEYS_SPACE);
+            key_row(ui, words::ESCAPE, words::KEYS_ESCAPE);
             key_row(ui, "Ctrl + / Ctrl −", words::KEYS_SCALE);
+            key_row(ui, "Ctrl 0", words::KEYS_SCALE_BACK);
+            key_row(ui, words::DRAG, words::KEYS_PAN);
+            key_row(ui, words::CTRL_WHEEL, words::KEYS_ZOOM);
+            key_row(ui, words::RIGHT_DRAG, words::KEYS_BOX_ZOOM);
             key_row(ui, words::DOUBLE_CLICK, words::KEYS_PLOT);
         });
         ui.add_space(16.0);

@@ -133,6 +133,7 @@ fn mark(workbench: &Workbench, selection: &Selection, step: Step) -> Mark {
                 }
             }
             Some(Err(_)) => Mark::Bad("✖".to_owned()),
+            None if results.refusal.is_some() => Mark::Bad("✖".to_owned()),
             None => Mark::None,
         },
     }

@@ -51,7 +51,14 @@ fn progress_or_summary(ui: &mut Ui, workbench: &Workbench, commands: &mut Vec<Co
     } else if workbench.is_loading() {
         ui.label(theme::dim(ui, words::READING_FILE));
     }
-    let (Some(document), Some(results)) = (workbench.document(), workbench.results()) else { return };
+    let Some(document) = workbench.document() else { return };
+    let Some(results) = workbench.results() else {
+        // The first solve was cancelled.
+        if !workbench.is_busy() && ui.button(words::SOLVE).clicked() {
+            commands.push(Command::Solve);
+        }
+        return;
+    };
     if workbench.results_are_current() {
         let stations = || document.session.stations.iter().filter(|station| station.enabled);
         let captures = || stations().flat_map(|station| &station.captures);
@@ -60,6 +67,9 @@ fn progress_or_summary(ui: &mut Ui, workbench: &Workbench, commands: &mut Vec<Co
         let summary = words::summary(stations().count(), &captures, results.elapsed.as_millis());
         ui.label(theme::dim(ui, summary));
     } else {
+        if !workbench.is_busy() && ui.button(words::SOLVE).clicked() {
+            commands.push(Command::Solve);
+        }
         let color = theme::palette(ui).warn;
         ui.label(RichText::new(format!("! {}", words::OUT_OF_DATE)).color(color))
             .on_hover_text(words::OUT_OF_DATE_HINT);
@@ -71,9 +81,9 @@ fn fraction(done: usize, total: usize) -> f32 {
     if total == 0 { 0.0 } else { done as f32 / total as f32 }
 }
 
-/// The notices that stand above the line: on the Session page, errors stand beside the path field instead.
+/// The notices that stand above the line: on the Session page, errors of opening stand beside the path field instead.
 pub fn notices_shown(workbench: &Workbench, step: Step) -> impl Iterator<Item = &Notice> {
-    workbench.notices().iter().filter(move |notice| step != Step::Session || notice.kind == NoticeKind::Done)
+    workbench.notices().iter().filter(move |notice| step != Step::Session || !notice.is_of_opening)
 }
 
 /// Draws these notices, newest last, each with a button to dismiss it.

@@ -104,7 +104,9 @@ fn right_side(ui: &mut Ui, workbench: &Workbench, actions: &mut Vec<Action>) -> 
     }
     if let Some(document) = workbench.document() {
         let convention = document.session.robot.pose_convention;
+        ui.add_space(8.0);
         widgets::chip(ui, words::UNITS, words::UNITS_HINT);
+        ui.add_space(8.0);
         widgets::chip(ui, convention.label, &words::convention_hint(convention.formula));
     }
     ui.cursor().right()

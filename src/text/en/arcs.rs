@@ -24,6 +24,14 @@ pub const PREVIOUS_STEP: &str = "Previous step";
 pub const NEXT_STEP: &str = "Next step";
 /// On the right of the profile's card.
 pub const TRUE_SCALE: &str = "true scale";
+/// Toggle: the view holds all points of the profile.
+pub const WHOLE_PROFILE: &str = "whole profile";
+/// The same, on hover.
+pub const WHOLE_PROFILE_HINT: &str = "Show all points, also those that are not of the ball";
+/// Toggle: the view holds the arc.
+pub const ARC_ONLY: &str = "arc";
+/// The same, on hover.
+pub const ARC_ONLY_HINT: &str = "Show the arc and the ball around it";
 /// Title of the curve's card.
 pub const RADIUS_AGAINST_STEP: &str = "Radius against step";
 /// Axis title.

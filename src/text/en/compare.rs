@@ -1,12 +1,14 @@
 //! The comparison panel.
 
-use crate::calibrate::{Method, Solution, VerdictReason};
+use crate::calibrate::{Solution, VerdictReason};
 
 use super::{methods, warnings};
 
 /// In place of the panel without a session.
 pub const NO_SESSION: &str = "Open a session, or one of the samples, to compare the methods on it.";
 /// In place of the panel before the first results.
+pub const CANCELLED: &str = "Solving was cancelled. \"Solve\" at the bottom right starts it again.";
+/// While the first result is on its way.
 pub const SOLVING: &str = "Solving: the methods appear here as soon as the first result is there.";
 /// Shown on results of an earlier revision.
 pub const OUT_OF_DATE: &str = "out of date";
@@ -91,8 +93,10 @@ pub const DIFFERENCE_HINT: &str = "second relative to first";
 pub const ROTATION: &str = "rotation";
 /// Head of the column of distances.
 pub const AT_WORKSPACE_POINT: &str = "at workspace point";
+/// The same in two lines, where columns are narrow.
+pub const AT_WORKSPACE_POINT_NARROW: &str = "at workspace\npoint";
 /// Head of the column of significance.
-pub const WITHIN: &str = "within its σ";
+pub const WITHIN: &str = "within 2 σ";
 /// Instead of a significance.
 pub const NO_STD: &str = "σ unknown";
 /// In place of the difference table.
@@ -119,6 +123,18 @@ pub fn headline(distance_mm: &str) -> String {
     format!("a point at {distance_mm} mm is known to")
 }
 
+/// The same where the session states no distance.
+#[must_use]
+pub fn headline_amid_balls(z_mm: &str) -> String {
+    format!("a point amid the balls seen, z = {z_mm} mm, is known to")
+}
+
+/// The method behind the verdict; `is_continued` by the headline.
+#[must_use]
+pub fn judged_method(method: &str, is_continued: bool) -> String {
+    format!("· {method}{}", if is_continued { ":" } else { "" })
+}
+
 /// The headline's figure.
 #[must_use]
 pub fn headline_figure(std_mm: &str) -> String {
@@ -131,17 +147,6 @@ pub fn verdict_of(method: &str) -> String {
     format!("Verdict on “{method}”")
 }
 
-/// The method's name in the comparison, where space is short.
-#[must_use]
-pub const fn compared_method(method: Method) -> &'static str {
-    match method {
-        Method::BallFixedPoint => "Fixed point",
-        Method::BallMaxArcStep => "Published stop",
-        Method::BallMaxArc => "Largest arc",
-        Method::BallBundle => "Bundle",
-    }
-}
-
 /// Beginning of the comparison.
 #[must_use]
 pub fn maximum_error(method: &str) -> String {
@@ -152,6 +157,12 @@ pub fn maximum_error(method: &str) -> String {
 #[must_use]
 pub fn against(baseline: &str, error_mm: &str) -> String {
     format!("against {baseline} ({error_mm} mm)")
+}
+
+/// End of the comparison where the two are alike.
+#[must_use]
+pub fn no_better_than(baseline: &str, error_mm: &str) -> String {
+    format!("no better than {baseline} ({error_mm} mm)")
 }
 
 /// What "maximum error" means.
@@ -202,6 +213,12 @@ pub fn truth_figures(distance_mm: &str, rotation_deg: &str) -> String {
 #[must_use]
 pub fn pair(first: &str, second: &str) -> String {
     format!("{first} → {second}")
+}
+
+/// A pair of methods in two lines, where columns are narrow.
+#[must_use]
+pub fn pair_in_two_lines(first: &str, second: &str) -> String {
+    format!("{first}\n→ {second}")
 }
 
 /// Whether a difference is within its standard deviation.

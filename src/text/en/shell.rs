@@ -55,7 +55,7 @@ pub const UNSAVED: &str = "Unsaved changes";
 /// The units in use.
 pub const UNITS: &str = "mm · °";
 /// What the units chip says on hover.
-pub const UNITS_HINT: &str = "Lengths in millimetres, angles in degrees";
+pub const UNITS_HINT: &str = "The units of this window: lengths in millimetres, angles in degrees";
 
 /// What the convention chip says on hover.
 #[must_use]
@@ -121,6 +121,8 @@ pub const CANCEL: &str = "Cancel";
 pub const DISMISS: &str = "Dismiss";
 /// Name of the progress bar.
 pub const SOLVING: &str = "solving";
+/// Solves after a cancel.
+pub const SOLVE: &str = "Solve";
 
 /// Progress of the solver.
 #[must_use]
@@ -173,7 +175,7 @@ pub const LEFT_OUT: &str = "left out";
 /// What the row means.
 pub const LEFT_OUT_HINT: &str = "Distance between this station's ball and the ball found without it";
 /// Row of the inspector for a reduced point.
-pub const BALL_IN_SENSOR: &str = "ball";
+pub const BALL_IN_SENSOR: &str = "ball in sensor";
 /// What the side's ratio means.
 pub const SIDE_HINT: &str =
     "The side of the laser plane on which the ball's centre lies; the other side costs that many times as much";
@@ -240,6 +242,12 @@ pub const SAVE_CHANGES_HINT: &str = "Without saving they are lost.";
 pub const DISCARD: &str = "Discard";
 /// Heading of the save dialog.
 pub const SAVE_AS_TITLE: &str = "Save the session as";
+/// Heading of the question before another file is replaced.
+pub const REPLACE_TITLE: &str = "Replace the file that is there?";
+/// The question's explanation.
+pub const REPLACE_HINT: &str = "This file exists already. What is in it now is lost.";
+/// Button.
+pub const REPLACE: &str = "Replace";
 /// Name of the path field.
 pub const FILE_PATH: &str = "File path";
 /// Told where the system offers no file dialog.
@@ -257,13 +265,47 @@ pub const ABOUT_TEXT: &str =
 /// Shortcut's explanation.
 pub const KEYS_RAIL: &str = "go to a step of the rail";
 /// Shortcut's explanation.
-pub const KEYS_LIST: &str = "previous or next station or profile";
+pub const KEYS_LIST: &str = "previous or next station, in Arcs and Poses";
+/// Shortcut's explanation.
+pub const KEYS_STEPS: &str = "previous or next step of the sweep, in Arcs";
+/// The key.
+pub const TAB: &str = "Tab";
+/// Shortcut's explanation.
+pub const KEYS_TAB: &str = "next control; with Shift the one before";
+/// The keys.
+pub const SPACE: &str = "Space / Enter";
+/// Shortcut's explanation.
+pub const KEYS_SPACE: &str = "press the control";
+/// The key.
+pub const ESCAPE: &str = "Esc";
+/// Shortcut's explanation.
+pub const KEYS_ESCAPE: &str = "close a menu or a question";
 /// Shortcut's explanation.
 pub const KEYS_SCALE: &str = "make the interface larger or smaller";
+/// Shortcut's explanation.
+pub const KEYS_SCALE_BACK: &str = "interface in its own size again";
+/// The mouse.
+pub const DRAG: &str = "Drag";
+/// Its explanation.
+pub const KEYS_PAN: &str = "move the view of a plot";
+/// The mouse.
+pub const CTRL_WHEEL: &str = "Ctrl + wheel";
+/// Its explanation.
+pub const KEYS_ZOOM: &str = "zoom a plot";
+/// The mouse.
+pub const RIGHT_DRAG: &str = "Right drag";
+/// Its explanation.
+pub const KEYS_BOX_ZOOM: &str = "zoom a plot to a box";
 /// Shortcut's explanation.
 pub const KEYS_PLOT: &str = "fit the view of a plot";
 /// The keys.
 pub const DOUBLE_CLICK: &str = "Double click";
+
+/// Two shortcuts for the same.
+#[must_use]
+pub fn either_key(first: &str, second: &str) -> String {
+    format!("{first} / {second}")
+}
 
 /// Version line.
 #[must_use]

@@ -40,15 +40,18 @@ pub fn sample_lesson(file_name: &str) -> (&'static str, &'static str) {
         "lin-mu-2019-table-2.json" => {
             ("Lin & Mu 2019, table 2", "Largest arc: the figures printed in the paper, re-computed")
         }
-        "clean-sweeps.json" => ("Clean sweeps", "A calibration as it should be: all methods agree"),
+        "clean-sweeps.json" => (
+            "Clean sweeps",
+            "A calibration as it should be: curve and bundle reach the truth, the published stop does not",
+        ),
         "dirty-profiles.json" => {
-            ("Dirty profiles", "Glints, gaps and a fixture in view: outliers are found and left out")
+            ("Dirty profiles", "A table, spikes and gaps in view: what is not the ball is left out")
         }
         "few-rotations.json" => ("Few rotations", "Small residuals that prove nothing: orientations too much alike"),
         "near-largest-arc.json" => {
-            ("Near the largest arc", "Where the fixed-point method goes blind, and the whole curve does not")
+            ("Near the largest arc", "Single sections next to the largest arc: y is all but unknown")
         }
-        "one-bad-pose.json" => ("One bad pose", "A mistyped pose: leaving each station out in turn finds it"),
+        "one-bad-pose.json" => ("One bad pose", "One pose is wrong by 2 mm: leaving each station out in turn finds it"),
         _ => ("Sample", "A sample session"),
     }
 }

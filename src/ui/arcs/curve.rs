@@ -45,7 +45,7 @@ pub fn show(
     chart.x_group = Some(group);
     let curve = chart.show(ui, is_fitted);
     let hovered = curve.hovered(sweep.points.iter().map(|point| (point, [point.travel_mm, point.section_radius_mm])));
-    paint_curve(ui, &curve, sweep, ball_radius_mm);
+    let stop_name = paint_curve(ui, &curve, sweep, ball_radius_mm);
 
     rule(ui);
     let strip_extent = Extent { x: extent.x, y: residual_range(sweep) };
@@ -77,6 +77,7 @@ pub fn show(
             strip.painter.circle_stroke(strip.at(point.travel_mm, residual_um), 7.0, ring);
         }
     }
+    note_peak(ui, &curve, sweep, ball_radius_mm, stop_name);
     if let Some(point) = hovered {
         readout(ui, &curve, point, curve.at(point.travel_mm, point.section_radius_mm));
     } else if let Some(point) = in_strip {
@@ -130,7 +131,8 @@ fn residual_range(sweep: &Sweep) -> [f64; 2] {
     [-largest * 1.1, largest * 1.1]
 }
 
-fn paint_curve(ui: &Ui, canvas: &Canvas, sweep: &Sweep, ball_radius_mm: f64) {
+/// Paints everything but the steps and the peak's name; answers where the published stop's name stands.
+fn paint_curve(ui: &Ui, canvas: &Canvas, sweep: &Sweep, ball_radius_mm: f64) -> Rect {
     let palette = theme::palette(ui);
     let color = theme::method_color(Method::BallMaxArc);
     let rect = canvas.rect();
@@ -159,10 +161,6 @@ fn paint_curve(ui: &Ui, canvas: &Canvas, sweep: &Sweep, ball_radius_mm: f64) {
     let curve = curve.into_iter().map(|[travel, radius]| canvas.at(travel, radius)).collect();
     canvas.painter.line(curve, Stroke::new(1.5, color));
 
-    let peak =
-        text::peak(&widgets::signed(sweep.peak_mm, decimals_of_std(sweep.peak_std_mm)), &std_text(sweep.peak_std_mm));
-    canvas.note(ui, pos2(middle + half + 6.0, rect.bottom() - 12.0), Align2::LEFT_BOTTOM, &peak, palette.text);
-
     let on_curve = |travel_mm: f64| {
         let offset_mm = travel_mm - sweep.peak_mm;
         canvas.at(travel_mm, (ball_radius_mm * ball_radius_mm - offset_mm * offset_mm).max(0.0).sqrt())
@@ -176,7 +174,45 @@ fn paint_curve(ui: &Ui, canvas: &Canvas, sweep: &Sweep, ball_radius_mm: f64) {
     let half_width_mm = f64::from(STOP_LABEL_HALF_WIDTH) / f64::from(canvas.scale().max(f32::MIN_POSITIVE));
     let flanks = [-half_width_mm, half_width_mm].map(|side| on_curve(sweep.published_stop_mm + side).y);
     let top = (flanks[0].max(flanks[1]) + 6.0).clamp(stop.y + 9.0, stop.y + 60.0);
-    canvas.note(ui, pos2(stop.x, top), Align2::CENTER_TOP, &words, palette.text_dim);
+    let anchor = pos2(stop.x, top);
+    canvas.note(ui, anchor, Align2::CENTER_TOP, &words, palette.text_dim);
+    canvas.note_rect(ui, anchor, Align2::CENTER_TOP, &words)
+}
+
+/// Names the peak beside its band, at the first height, from below, where neither steps nor curve nor `taken` are.
+fn note_peak(ui: &Ui, canvas: &Canvas, sweep: &Sweep, ball_radius_mm: f64, taken: Rect) {
+    /// How far apart the heights tried are, points.
+    const TRY_EVERY: f32 = 12.0;
+    const NUM_TRIES: u8 = 16;
+    let words =
+        text::peak(&widgets::signed(sweep.peak_mm, decimals_of_std(sweep.peak_std_mm)), &std_text(sweep.peak_std_mm));
+    let [left, right] =
+        [-sweep.peak_std_mm, sweep.peak_std_mm].map(|offset_mm| canvas.at(sweep.peak_mm + offset_mm, ball_radius_mm).x);
+    let rect = canvas.rect();
+    let bounds = canvas.transform.bounds().range_x();
+    let mut marks: Vec<_> = curve_points(sweep.peak_mm, ball_radius_mm, [*bounds.start(), *bounds.end()])
+        .into_iter()
+        .map(|[travel, radius]| Rect::from_center_size(canvas.at(travel, radius), vec2(4.0, 4.0)))
+        .collect();
+    let side = vec2(STEP_RADIUS + 4.0, STEP_RADIUS + 4.0) * 2.0;
+    marks.extend(
+        sweep
+            .points
+            .iter()
+            .map(|point| Rect::from_center_size(canvas.at(point.travel_mm, point.section_radius_mm), side)),
+    );
+    marks.push(taken.expand(3.0));
+    let places = (0..NUM_TRIES).flat_map(|idx| {
+        let y = rect.bottom() - 12.0 - f32::from(idx) * TRY_EVERY;
+        [(pos2(right + 6.0, y), Align2::LEFT_BOTTOM), (pos2(left - 6.0, y), Align2::RIGHT_BOTTOM)]
+    });
+    let is_free = |(anchor, align): &(egui::Pos2, Align2)| {
+        let place = canvas.note_rect(ui, *anchor, *align, &words);
+        rect.contains_rect(place) && marks.iter().all(|mark| !mark.intersects(place))
+    };
+    let first = (pos2(right + 6.0, rect.bottom() - 12.0), Align2::LEFT_BOTTOM);
+    let (anchor, align) = places.into_iter().find(is_free).unwrap_or(first);
+    canvas.note(ui, anchor, align, &words, theme::palette(ui).text);
 }
 
 fn paint_step(ui: &Ui, canvas: &Canvas, [x, y]: [f64; 2], std: f64, is_selected: bool) {

@@ -35,6 +35,7 @@ pub fn show(
     expanded: &mut BTreeSet<usize>,
     selection: &mut Selection,
     reveal: bool,
+    from_top: &mut widgets::FromTop,
 ) -> ListResponse {
     ui.spacing_mut().item_spacing.y = 0.0;
     head(ui);
@@ -46,30 +47,26 @@ pub fn show(
         }
     }
     let mut response = ListResponse::default();
-    ScrollArea::vertical().id_salt("arcs stations").auto_shrink([false, false]).show_rows(
-        ui,
-        theme::ROW_HEIGHT,
-        lines.len(),
-        |ui, range| {
-            ui.spacing_mut().item_spacing.y = 0.0;
-            if reveal && let Some(line_idx) = selected_line(&lines, expanded, selection) {
-                scroll_to(ui, line_idx, range.start);
-            }
-            for line in &lines[range] {
-                match *line {
-                    Line::Station(station_idx) => {
-                        station_line(ui, station_idx, &rows[station_idx], expanded, selection);
-                    }
-                    Line::Capture(station_idx, capture_idx) => {
-                        let row = &rows[station_idx];
-                        if capture_line(ui, station_idx, capture_idx, row, selection) {
-                            response.hovered_capture = Some(capture_idx);
-                        }
+    let scroll_area = from_top.apply(ScrollArea::vertical().id_salt("arcs stations").auto_shrink([false, false]));
+    scroll_area.show_rows(ui, theme::ROW_HEIGHT, lines.len(), |ui, range| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        if reveal && let Some(line_idx) = selected_line(&lines, expanded, selection) {
+            scroll_to(ui, line_idx, range.start);
+        }
+        for line in &lines[range] {
+            match *line {
+                Line::Station(station_idx) => {
+                    station_line(ui, station_idx, &rows[station_idx], expanded, selection);
+                }
+                Line::Capture(station_idx, capture_idx) => {
+                    let row = &rows[station_idx];
+                    if capture_line(ui, station_idx, capture_idx, row, selection) {
+                        response.hovered_capture = Some(capture_idx);
                     }
                 }
             }
-        },
-    );
+        }
+    });
     response
 }
 

@@ -50,6 +50,9 @@ pub struct ArcsState {
     is_profile_fitted: bool,
     is_curve_fitted: bool,
     hovered_capture: Option<usize>,
+    shows_whole_profile: bool,
+    list_from_top: widgets::FromTop,
+    plots_from_top: widgets::FromTop,
 }
 
 impl Default for ArcsState {
@@ -63,6 +66,9 @@ impl Default for ArcsState {
             is_profile_fitted: true,
             is_curve_fitted: true,
             hovered_capture: None,
+            shows_whole_profile: false,
+            list_from_top: widgets::FromTop::default(),
+            plots_from_top: widgets::FromTop::default(),
         }
     }
 }
@@ -138,7 +144,7 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut ArcsState) 
         text::STATIONS,
         area.height(),
         |_| {},
-        |ui| list::show(ui, &rows, &mut state.expanded, selection, has_moved).hovered_capture,
+        |ui| list::show(ui, &rows, &mut state.expanded, selection, has_moved, &mut state.list_from_top).hovered_capture,
     );
     let right = right.with_min_x(right.left() + theme::GAP);
     let mut right = ui.new_child(UiBuilder::new().max_rect(right));
@@ -209,7 +215,8 @@ fn plots(
         .unwrap_or(selection.capture_idx);
     let view = state.view(document, results, selection.station_idx, shown_capture);
     let is_out_of_date = results.is_some_and(|results| results.revision != document.revision);
-    top_strip(ui, station, sweep, selection, &mut state.fit, is_out_of_date);
+    let shift = shift_words(view.as_deref(), state.fit);
+    top_strip(ui, station, sweep, selection, &mut state.fit, shift.as_deref(), is_out_of_date);
 
     let bottom_height = sweep.map_or(0.0, |_| BOTTOM_HEIGHT + theme::GAP);
     let height = ui.available_height() - bottom_height;
@@ -232,7 +239,9 @@ fn plots(
         // The scroll bar gets the panel's margin, so that it covers no plot.
         let area = ui.available_rect_before_wrap();
         let mut page = ui.new_child(UiBuilder::new().max_rect(area.with_max_x(area.right() + theme::GAP - 2.0)));
-        ScrollArea::vertical().id_salt("arcs plots").auto_shrink([false, false]).show(&mut page, |ui| {
+        let scroll_area = ScrollArea::vertical().id_salt("arcs plots").auto_shrink([false, false]);
+        let scroll_area = state.plots_from_top.apply(scroll_area);
+        scroll_area.show(&mut page, |ui| {
             ui.set_max_width(area.width());
             ui.spacing_mut().item_spacing.y = theme::GAP;
             profile_card(ui, &title, STACKED_HEIGHT, view.as_deref(), state);
@@ -251,6 +260,7 @@ fn top_strip(
     sweep: Option<&Sweep>,
     selection: &mut Selection,
     fit: &mut CircleMethod,
+    shift: Option<&str>,
     is_out_of_date: bool,
 ) {
     widgets::card(
@@ -273,6 +283,9 @@ fn top_strip(
                         .response
                         .labelled_by(label.id);
                     steps(ui, station, selection);
+                    if let Some(shift) = shift {
+                        ui.label(theme::dim(ui, shift));
+                    }
                     if let Some(sweep) = sweep {
                         let angle_deg = sweep.travel_off_normal_rad.to_degrees();
                         ui.label(theme::dim(ui, text::travel_off_normal(angle_deg)));
@@ -312,28 +325,50 @@ fn steps(ui: &mut Ui, station: &StationRow, selection: &mut Selection) {
     });
 }
 
+/// What another fit than the robust one changes.
+fn shift_words(view: Option<&CaptureView>, fit: CircleMethod) -> Option<String> {
+    match view {
+        Some(CaptureView::Profile(model::ProfileModel { section: Ok(section), .. })) if fit != CircleMethod::Robust => {
+            Some(profile::shift_words(section))
+        }
+        _ => None,
+    }
+}
+
 fn profile_card(ui: &mut Ui, title: &str, height: f32, view: Option<&CaptureView>, state: &mut ArcsState) {
-    let fit = state.fit;
-    let is_fitted = &mut state.is_profile_fitted;
+    let has_section = matches!(view, Some(CaptureView::Profile(model)) if model.section.is_ok());
+    let shows_whole = state.shows_whole_profile;
+    let mut chosen = None;
     let right = |ui: &mut Ui| {
-        let words = match view {
-            Some(CaptureView::Profile(model::ProfileModel { section: Ok(section), .. }))
-                if fit != CircleMethod::Robust =>
+        ui.spacing_mut().interact_size.y = 22.0;
+        ui.spacing_mut().button_padding = egui::vec2(8.0, 2.0);
+        ui.spacing_mut().item_spacing.x = 4.0;
+        // Without a section all points are shown anyway.
+        if has_section {
+            for (is_whole, name, hint) in
+                [(true, text::WHOLE_PROFILE, text::WHOLE_PROFILE_HINT), (false, text::ARC_ONLY, text::ARC_ONLY_HINT)]
             {
-                profile::shift_words(section)
+                let button = ui.add(egui::Button::selectable(shows_whole == is_whole, name)).on_hover_text(hint);
+                if button.clicked() {
+                    chosen = Some(is_whole);
+                }
             }
-            _ => text::TRUE_SCALE.to_owned(),
-        };
-        ui.label(theme::dim(ui, words));
+        }
+        ui.label(theme::dim(ui, text::TRUE_SCALE));
     };
+    let is_fitted = &mut state.is_profile_fitted;
     widgets::card_with_height(ui, title, height, right, |ui| match view {
-        Some(CaptureView::Profile(model)) => profile::show(ui, model, is_fitted),
+        Some(CaptureView::Profile(model)) => profile::show(ui, model, shows_whole, is_fitted),
         Some(CaptureView::Point([x, y, z])) => {
             let [x, y, z] = [x, y, z].map(|value| widgets::fixed(*value, 3));
             empty_card(ui, text::POINT_READING, Some(&text::point_coordinates(&x, &y, &z)));
         }
         None => {}
     });
+    if let Some(is_whole) = chosen {
+        state.shows_whole_profile = is_whole;
+        state.is_profile_fitted = true;
+    }
 }
 
 fn empty_card(ui: &mut Ui, sentence: &str, figures: Option<&str>) {

@@ -19,14 +19,19 @@ const POINT_RADIUS: f32 = 1.6;
 const THIN_TO: f32 = 0.75;
 
 /// Shows both plots in the space available.
-pub fn show(ui: &mut Ui, model: &ProfileModel, is_fitted: &mut bool) {
+pub fn show(ui: &mut Ui, model: &ProfileModel, shows_whole: bool, is_fitted: &mut bool) {
     charts::legend(ui, &entries(ui, model));
     let group = Id::unique("arcs profile x");
     let height = ui.available_height();
     let has_section = model.section.is_ok();
     let profile_height = if has_section { (height * PROFILE_PART).round() } else { height };
-    let mut chart =
-        Chart::new(Id::unique("arcs profile"), text::X_AXIS, text::Z_AXIS, profile_height, profile_extent(model));
+    let mut chart = Chart::new(
+        Id::unique("arcs profile"),
+        text::X_AXIS,
+        text::Z_AXIS,
+        profile_height,
+        profile_extent(model, shows_whole),
+    );
     chart.invert_y = model.z_grows_away;
     chart.has_equal_scales = true;
     chart.x_group = Some(group);
@@ -86,15 +91,18 @@ fn entries(ui: &Ui, model: &ProfileModel) -> Vec<LegendEntry> {
     entries
 }
 
-/// The near half of the ball with some room towards the sensor; without a section, all points.
-fn profile_extent(model: &ProfileModel) -> Extent {
+/// The near half of the ball with some room towards the sensor; all points as well where `shows_whole`, and only them
+/// without a section.
+fn profile_extent(model: &ProfileModel, shows_whole: bool) -> Extent {
     let mut extent = Extent::NOTHING;
     if let Ok(SectionModel { circle, .. }) = &model.section {
         let reach_mm = model.ball_radius_mm.unwrap_or(circle.radius_mm).max(circle.radius_mm);
         let towards_sensor = if model.z_grows_away { -1.0 } else { 1.0 };
         extent.include(circle.x_mm - reach_mm * 1.15, circle.z_mm + towards_sensor * reach_mm * 1.2);
         extent.include(circle.x_mm + reach_mm * 1.15, circle.z_mm - towards_sensor * reach_mm * 0.45);
-        return extent;
+        if !shows_whole {
+            return extent;
+        }
     }
     for point in &model.points {
         extent.include(point.x_mm, point.z_mm);
@@ -206,7 +214,7 @@ pub fn shift_words(section: &SectionModel) -> String {
     text::fit_shift(&dx, &dz, &dl)
 }
 
-/// The section's radius with the digits that its standard deviation allows.
+/// The section's radius; no ± stands beside it, so its last digit is the first that its standard deviation reaches.
 fn radius_words(section: &SectionModel) -> String {
-    widgets::fixed(section.circle.radius_mm, decimals_of_std(section.std_mm[2]))
+    widgets::fixed(section.circle.radius_mm, decimals_of_std(section.std_mm[2]).saturating_sub(1))
 }

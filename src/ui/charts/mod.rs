@@ -245,14 +245,25 @@ impl Canvas {
     /// A short text with its ground, kept inside the plot.
     pub fn note(&self, ui: &Ui, anchor: Pos2, align: egui::Align2, text: &str, color: egui::Color32) {
         let galley = ui.painter().layout_no_wrap(text.to_owned(), egui::FontId::proportional(theme::SMALL_SIZE), color);
-        let wanted = align.anchor_size(anchor, galley.size());
-        let room = self.rect().shrink(4.0);
-        let left = wanted.left().clamp(room.left(), (room.right() - galley.size().x).max(room.left()));
-        let top = wanted.top().clamp(room.top(), (room.bottom() - galley.size().y).max(room.top()));
-        let rect = Rect::from_min_size(pos2(left, top), galley.size());
+        let rect = self.kept_inside(align.anchor_size(anchor, galley.size()));
         // A veil, so that the text is legible across lines and points.
         self.painter.rect_filled(rect.expand2(vec2(3.0, 1.0)), 2.0, theme::palette(ui).surface.gamma_multiply(0.8));
         self.painter.galley(rect.min, galley, color);
+    }
+
+    /// Where [`Self::note`] would put a text.
+    #[must_use]
+    pub fn note_rect(&self, ui: &Ui, anchor: Pos2, align: egui::Align2, text: &str) -> Rect {
+        let font = egui::FontId::proportional(theme::SMALL_SIZE);
+        let galley = ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::PLACEHOLDER);
+        self.kept_inside(align.anchor_size(anchor, galley.size()))
+    }
+
+    fn kept_inside(&self, wanted: Rect) -> Rect {
+        let room = self.rect().shrink(4.0);
+        let left = wanted.left().clamp(room.left(), (room.right() - wanted.width()).max(room.left()));
+        let top = wanted.top().clamp(room.top(), (room.bottom() - wanted.height()).max(room.top()));
+        Rect::from_min_size(pos2(left, top), wanted.size())
     }
 }
 

@@ -14,6 +14,33 @@ use super::table::RowCells;
 const AGREE_WITHIN_STDS: f64 = 2.0;
 /// Parts of a row: pair, Δx Δy Δz, rotation, workspace point, significance.
 const PARTS: [f32; 7] = [210.0, 96.0, 96.0, 96.0, 96.0, 130.0, 110.0];
+/// The same where the card is narrow.
+const NARROW_PARTS: [f32; 7] = [120.0, 56.0, 56.0, 56.0, 56.0, 86.0, 82.0];
+/// Below this width, points, the longest texts stand in two lines.
+const NARROW_BELOW: f32 = 800.0;
+/// Height of a row with two lines.
+const TWO_LINES_HEIGHT: f32 = 38.0;
+
+/// What the width allows.
+struct Shape {
+    widths: [f32; 7],
+    row_height: f32,
+    is_narrow: bool,
+}
+
+impl Shape {
+    fn of(ui: &Ui) -> Self {
+        let width = ui.available_width();
+        let is_narrow = width < NARROW_BELOW;
+        let parts = if is_narrow { NARROW_PARTS } else { PARTS };
+        let scale = width / parts.iter().sum::<f32>();
+        Self {
+            widths: parts.map(|part| part * scale),
+            row_height: if is_narrow { TWO_LINES_HEIGHT } else { theme::ROW_HEIGHT },
+            is_narrow,
+        }
+    }
+}
 
 /// Shows the table in the space available; pairs with the published stop only if it is shown.
 pub fn show(ui: &mut Ui, rows: &[DifferenceRow], shows_published_stop: bool) {
@@ -32,31 +59,34 @@ pub fn show(ui: &mut Ui, rows: &[DifferenceRow], shows_published_stop: bool) {
             });
             return;
         }
-        let scale = ui.available_width() / PARTS.iter().sum::<f32>();
-        let widths = PARTS.map(|part| part * scale);
-        let mut head = RowCells::new(ui, theme::ROW_HEIGHT);
+        let shape = Shape::of(ui);
+        let widths = &shape.widths;
+        let mut head = RowCells::new(ui, shape.row_height);
         head.head(widths[0], "", Align2::LEFT_CENTER);
         for (width, name) in widths[1..].iter().zip([
             "Δx / mm",
             "Δy / mm",
             "Δz / mm",
             text::ROTATION,
-            text::AT_WORKSPACE_POINT,
+            if shape.is_narrow { text::AT_WORKSPACE_POINT_NARROW } else { text::AT_WORKSPACE_POINT },
             text::WITHIN,
         ]) {
             head.head(*width, name, Align2::RIGHT_CENTER);
         }
         for row in rows {
-            pair(ui, row, &widths);
+            pair(ui, row, &shape);
         }
     });
 }
 
-fn pair(ui: &mut Ui, row: &DifferenceRow, widths: &[f32; 7]) {
+fn pair(ui: &mut Ui, row: &DifferenceRow, shape: &Shape) {
     let palette = theme::palette(ui);
     let difference = &row.difference;
-    let mut cells = RowCells::new(ui, theme::ROW_HEIGHT);
-    cells.text(widths[0], &text::pair(method_short_name(row.first), method_short_name(row.second)));
+    let widths = &shape.widths;
+    let mut cells = RowCells::new(ui, shape.row_height);
+    let (first, second) = (method_short_name(row.first), method_short_name(row.second));
+    let names = if shape.is_narrow { text::pair_in_two_lines(first, second) } else { text::pair(first, second) };
+    cells.text(widths[0], &names);
     for axis in 0..3 {
         let value = difference.translation_mm[axis];
         cells.number(widths[1 + axis], value, &widgets::signed(value, 3), Color32::TRANSPARENT);

@@ -125,6 +125,17 @@ pub struct Column {
     pub outcome: Result<MethodTable, String>,
 }
 
+/// The point that the headline is about.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorkspacePoint {
+    /// Where it is along the range axis, mm.
+    pub z_mm: f64,
+    /// Whether the session states that distance; otherwise the point is amid the balls seen.
+    pub is_stated: bool,
+    /// Its standard deviation, mm.
+    pub std_mm: f64,
+}
+
 /// The verdict's band.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Band {
@@ -134,8 +145,8 @@ pub struct Band {
     pub verdict: Verdict,
     /// Its reason in a sentence.
     pub reason: String,
-    /// Distance of the workspace point and its standard deviation, mm.
-    pub workspace_point: Option<(f64, f64)>,
+    /// How well a point is known.
+    pub workspace_point: Option<WorkspacePoint>,
     /// Sentence and remedy of each warning.
     pub warnings: Vec<(String, &'static str)>,
 }
@@ -202,7 +213,7 @@ impl CompareModel {
             .collect();
         Self {
             columns,
-            band: best_available(results).map(band),
+            band: best_available(results).map(|solution| band(session, solution)),
             improvement: compare::improvement(results),
             differences: differences(results),
             published: session.published.as_ref().filter(|published| !published.ball_in_base_mm.is_empty()).map(
@@ -242,16 +253,17 @@ fn method_table(session: &Session, solution: &Solution) -> MethodTable {
     }
 }
 
-fn band(solution: &Solution) -> Band {
+fn band(session: &Session, solution: &Solution) -> Band {
     let (verdict, reason): (Verdict, VerdictReason) = verdict::judge(solution);
     Band {
         method: solution.method,
         verdict,
         reason: text::compare::verdict_reason(solution, reason),
-        workspace_point: solution
-            .uncertainty
-            .as_ref()
-            .map(|uncertainty| (uncertainty.reference_point_in_sensor_mm.z.abs(), uncertainty.workspace_point_std_mm)),
+        workspace_point: solution.uncertainty.as_ref().map(|uncertainty| WorkspacePoint {
+            z_mm: uncertainty.reference_point_in_sensor_mm.z,
+            is_stated: session.sensor.reference_distance_mm.is_some(),
+            std_mm: uncertainty.workspace_point_std_mm,
+        }),
         warnings: solution
             .warnings
             .iter()

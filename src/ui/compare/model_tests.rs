@@ -112,7 +112,7 @@ fn the_columns_keep_the_papers_order_and_say_why_one_is_empty() {
 fn the_band_judges_the_best_method_and_carries_its_warnings() {
     let band = CompareModel::new(&session(), &results()).band.expect("a result");
     assert_eq!((band.method, band.verdict), (Method::BallMaxArc, Verdict::Usable));
-    assert_eq!(band.workspace_point, Some((60.0, 0.06)));
+    assert_eq!(band.workspace_point, Some(WorkspacePoint { z_mm: 60.0, is_stated: false, std_mm: 0.06 }));
     assert_eq!(band.warnings.len(), 1);
 }
 

@@ -41,6 +41,7 @@ pub struct CompareState {
     bar_source: BarSource,
     scatter: ScatterView,
     model: Option<((u64, u64), Rc<CompareModel>)>,
+    from_top: widgets::FromTop,
 }
 
 impl CompareState {
@@ -85,7 +86,7 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut CompareStat
         return;
     };
     let Some(results) = workbench.results() else {
-        empty(ui, text::SOLVING);
+        empty(ui, if workbench.solve_progress().is_some() { text::SOLVING } else { text::CANCELLED });
         return;
     };
     if let Some(refusal) = &results.refusal {
@@ -98,7 +99,8 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut CompareStat
     // The scroll bar gets the panel's margin, so that it covers no numbers.
     let area = ui.available_rect_before_wrap();
     let mut page = ui.new_child(UiBuilder::new().max_rect(area.with_max_x(area.right() + theme::GAP - 2.0)));
-    ScrollArea::vertical().id_salt("compare").auto_shrink([false, false]).show(&mut page, |ui| {
+    let scroll_area = state.from_top.apply(ScrollArea::vertical().id_salt("compare").auto_shrink([false, false]));
+    scroll_area.show(&mut page, |ui| {
         ui.set_max_width(area.width());
         let top = ui.cursor().top();
         ui.spacing_mut().item_spacing.y = theme::GAP;

@@ -1,6 +1,6 @@
 //! The band above the columns: the verdict in a word, the headline figure, and which method is better by how much.
 
-use egui::{Align, Button, Frame, Layout, Margin, Ui, vec2};
+use egui::{Align, Button, Frame, Layout, Margin, RichText, Ui, vec2};
 
 use crate::app::compare::Improvement;
 use crate::calibrate::verdict::{GOOD_UP_TO_MM, USABLE_UP_TO_MM};
@@ -26,10 +26,14 @@ pub fn show(ui: &mut Ui, model: &CompareModel, is_out_of_date: bool, is_explaine
                     });
                     return;
                 };
-                let is_wide = fits_one_line(ui, model, band, is_out_of_date);
+                let words = Words::new(band, model.improvement.as_ref());
+                let rows = words.rows(ui, is_out_of_date);
                 ui.horizontal(|ui| {
                     ui.set_min_height(30.0);
-                    verdict_words(ui, band);
+                    verdict_words(ui, band, &words);
+                    if rows < 3 {
+                        headline(ui, band, &words);
+                    }
                     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                         if ui.add(Button::new(text::WHY).selected(*is_explained)).clicked() {
                             *is_explained = !*is_explained;
@@ -37,13 +41,16 @@ pub fn show(ui: &mut Ui, model: &CompareModel, is_out_of_date: bool, is_explaine
                         if is_out_of_date {
                             ui.label(theme::strong(text::OUT_OF_DATE).color(theme::palette(ui).warn));
                         }
-                        if let (Some(improvement), true) = (&model.improvement, is_wide) {
-                            ui.with_layout(Layout::right_to_left(Align::Center), |ui| better_by(ui, improvement, true));
+                        if rows == 1 {
+                            ui.with_layout(Layout::right_to_left(Align::Center), |ui| better_by(ui, &words, true));
                         }
                     });
                 });
-                if let (Some(improvement), false) = (&model.improvement, is_wide) {
-                    ui.horizontal_wrapped(|ui| better_by(ui, improvement, false));
+                if rows == 3 {
+                    ui.horizontal_wrapped(|ui| headline(ui, band, &words));
+                }
+                if rows > 1 && !words.comparison.is_empty() {
+                    ui.horizontal_wrapped(|ui| better_by(ui, &words, false));
                 }
                 if *is_explained {
                     reasons(ui, band);
@@ -53,59 +60,119 @@ pub fn show(ui: &mut Ui, model: &CompareModel, is_out_of_date: bool, is_explaine
     );
 }
 
-/// Whether verdict and comparison have room beside each other.
-fn fits_one_line(ui: &Ui, model: &CompareModel, band: &Band, is_out_of_date: bool) -> bool {
-    /// The verdict's mark, the button and the gaps between all these, points.
-    const OTHERS: f32 = 134.0;
-    let width = |text: &str, size: f32| {
-        let font = egui::FontId::proportional(size);
-        ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::PLACEHOLDER).size().x
-    };
-    let comparison = model.improvement.as_ref().map_or(0.0, |improvement| {
-        let words = text::maximum_error(text::compared_method(improvement.method))
-            + &text::against(method_short_name(improvement.baseline), "0.000")
-            + " 0.000 mm, −00 % ";
-        width(&words, theme::BODY_SIZE)
-    });
-    let headline = text::headline("100") + " " + &text::headline_figure("0.000");
-    let verdict = width(verdict_name(band.verdict), theme::HEADING_SIZE) + width(&headline, theme::BODY_SIZE);
-    let note = if is_out_of_date { width(text::OUT_OF_DATE, theme::BODY_SIZE) + 8.0 } else { 0.0 };
-    verdict + comparison + note + OTHERS <= ui.available_width()
+/// What the band says, part by part.
+struct Words {
+    verdict: &'static str,
+    method: String,
+    /// Where the point is, and how well it is known.
+    headline: Option<[String; 2]>,
+    comparison: Vec<(String, Tone)>,
 }
 
-fn verdict_words(ui: &mut Ui, band: &Band) {
+/// How a part of the comparison is set.
+#[derive(Clone, Copy)]
+enum Tone {
+    Plain,
+    Figure,
+    Better,
+    Worse,
+}
+
+impl Words {
+    fn new(band: &Band, improvement: Option<&Improvement>) -> Self {
+        let method = method_short_name(band.method);
+        Self {
+            verdict: verdict_name(band.verdict),
+            method: text::judged_method(method, band.workspace_point.is_some()),
+            headline: band.workspace_point.map(|point| {
+                let place = if point.is_stated {
+                    text::headline(&widgets::fixed(point.z_mm.abs(), 0))
+                } else {
+                    text::headline_amid_balls(&widgets::fixed(point.z_mm, 0))
+                };
+                [place, text::headline_figure(&std_text(point.std_mm))]
+            }),
+            comparison: improvement.map_or_else(Vec::new, comparison),
+        }
+    }
+
+    /// In how many rows the band has room: all in one, the comparison below, or the headline below as well.
+    fn rows(&self, ui: &Ui, is_out_of_date: bool) -> u8 {
+        /// Mark, button and the gaps around them, points.
+        const OTHERS: f32 = 110.0;
+        /// Gap between two parts, points.
+        const GAP: f32 = 8.0;
+        let width = |text: &str, size: f32| {
+            let font = egui::FontId::new(size, theme::strong_font().family);
+            ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::PLACEHOLDER).size().x + GAP
+        };
+        let body = |text: &str| width(text, theme::BODY_SIZE);
+        let note = if is_out_of_date { body(text::OUT_OF_DATE) } else { 0.0 };
+        let verdict = width(self.verdict, theme::HEADING_SIZE) + body(&self.method) + note + OTHERS;
+        let headline: f32 = self.headline.iter().flatten().map(|part| body(part)).sum();
+        let comparison: f32 = self.comparison.iter().map(|(part, _)| body(part)).sum();
+        let room = ui.available_width();
+        if verdict + headline + comparison <= room {
+            1
+        } else if verdict + headline <= room {
+            2
+        } else {
+            3
+        }
+    }
+}
+
+fn comparison(improvement: &Improvement) -> Vec<(String, Tone)> {
+    let mut words = vec![
+        (text::maximum_error(method_short_name(improvement.method)), Tone::Plain),
+        (format!("{} mm,", widgets::fixed(improvement.error_mm, 3)), Tone::Figure),
+    ];
+    let baseline = method_short_name(improvement.baseline);
+    let baseline_mm = widgets::fixed(improvement.baseline_error_mm, 3);
+    if improvement.is_alike() {
+        words.push((text::no_better_than(baseline, &baseline_mm), Tone::Plain));
+        return words;
+    }
+    if let Some(percent) = improvement.percent() {
+        let tone = if percent < 0.0 { Tone::Better } else { Tone::Worse };
+        words.push((format!("{} %", widgets::signed(percent, 0)), tone));
+    }
+    words.push((text::against(baseline, &baseline_mm), Tone::Plain));
+    words
+}
+
+fn verdict_words(ui: &mut Ui, band: &Band, words: &Words) {
     let color = theme::verdict_color_in(theme::palette(ui), band.verdict);
     ui.label(theme::heading(verdict_mark(band.verdict)).color(color));
-    ui.label(theme::heading(verdict_name(band.verdict)));
-    ui.add_space(4.0);
-    if let Some((distance_mm, std_mm)) = band.workspace_point {
-        let distance = widgets::fixed(distance_mm, 0);
-        ui.label(theme::dim(ui, text::headline(&distance))).on_hover_text(text::verdict_of(method_name(band.method)));
-        ui.label(theme::strong(text::headline_figure(&std_text(std_mm))))
-            .on_hover_text(text::verdict_of(method_name(band.method)));
-    }
+    ui.label(theme::heading(words.verdict));
+    ui.label(theme::strong(&words.method)).on_hover_text(text::verdict_of(method_name(band.method)));
+}
+
+fn headline(ui: &mut Ui, band: &Band, words: &Words) {
+    let Some([place, figure]) = &words.headline else { return };
+    let hover = text::verdict_of(method_name(band.method));
+    ui.label(theme::dim(ui, place)).on_hover_text(&hover);
+    ui.label(theme::strong(figure)).on_hover_text(&hover);
 }
 
 /// The comparison; `is_reversed` where the layout runs from the right.
-fn better_by(ui: &mut Ui, improvement: &Improvement, is_reversed: bool) {
+fn better_by(ui: &mut Ui, words: &Words, is_reversed: bool) {
     ui.spacing_mut().item_spacing.x = 5.0;
     let palette = theme::palette(ui);
-    let change = improvement.percent().map(|percent| {
-        let color = if percent < 0.0 { palette.good } else { palette.warn };
-        theme::strong(format!("{} %", widgets::signed(percent, 0))).color(color)
-    });
-    let baseline =
-        text::against(method_short_name(improvement.baseline), &widgets::fixed(improvement.baseline_error_mm, 3));
-    let mut words = vec![
-        egui::RichText::new(text::maximum_error(text::compared_method(improvement.method))),
-        theme::strong(format!("{} mm,", widgets::fixed(improvement.error_mm, 3))),
-    ];
-    words.extend(change);
-    words.push(egui::RichText::new(baseline));
+    let mut parts: Vec<RichText> = words
+        .comparison
+        .iter()
+        .map(|(part, tone)| match tone {
+            Tone::Plain => RichText::new(part),
+            Tone::Figure => theme::strong(part),
+            Tone::Better => theme::strong(part).color(palette.good),
+            Tone::Worse => theme::strong(part).color(palette.warn),
+        })
+        .collect();
     if is_reversed {
-        words.reverse();
+        parts.reverse();
     }
-    for part in words {
+    for part in parts {
         ui.label(part).on_hover_text(text::MAXIMUM_ERROR_HINT);
     }
 }

@@ -199,13 +199,23 @@ const SCROLL_BAR_WIDTH: f32 = 8.0;
 const POSE_DECIMALS: usize = 3;
 /// Width of one of three figures in a row, points: room for seven digits, sign and point.
 const FIGURE_WIDTH: f32 = 68.0;
+/// Least gap between a row's label and the first figure's column, points.
+const LABEL_GAP: f32 = 2.0;
 /// Width of a row's unit, points.
 const UNIT_WIDTH: f32 = 28.0;
 
 /// Three figures with their unit, each right-aligned in a column of its own, the unit in a dimmer tone.
 /// Hovering a figure shows all its digits.
 fn triple_row(ui: &mut Ui, label: &str, values: [f64; 3], decimals: usize, unit: &str) {
-    split_row(ui, label, |ui| {
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let label_width = ui.painter().layout_no_wrap(label.to_owned(), font, egui::Color32::PLACEHOLDER).size().x;
+    let figures_width = 3.0 * FIGURE_WIDTH + UNIT_WIDTH;
+    // A label too long to stand beside the figures stands above them.
+    let has_own_line = label_width + LABEL_GAP > ui.available_width() - figures_width;
+    if has_own_line {
+        split_row(ui, label, |_| {});
+    }
+    split_row(ui, if has_own_line { "" } else { label }, |ui| {
         ui.spacing_mut().item_spacing.x = 0.0;
         let cell = |width| egui::vec2(width, theme::ROW_HEIGHT);
         ui.allocate_ui_with_layout(cell(UNIT_WIDTH), Layout::left_to_right(Align::Center), |ui| {

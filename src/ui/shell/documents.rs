@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use egui::{Context, ViewportCommand};
 
-use crate::app::{Command, Document};
+use crate::app::{Command, Document, NoticeKind};
 use crate::text::shell as words;
 use crate::ui::dialogs::{self, SavePath, SavePathAnswer, UnsavedAnswer};
 use crate::ui::file_dialog::{Answer, Purpose};
@@ -82,7 +82,8 @@ impl Shell {
             Some(Answer::Unavailable(Purpose::Save)) => {
                 let folder = std::env::current_dir().unwrap_or_default();
                 let suggestion = folder.join(self.suggested_name());
-                self.save_path = Some(SavePath::new(suggestion.display().to_string()));
+                let own_file = self.workbench.document().and_then(|document| document.path.clone());
+                self.save_path = Some(SavePath::new(suggestion.display().to_string(), own_file));
             }
             Some(Answer::Cancelled) => self.after_saving = None,
             None => {}
@@ -94,7 +95,12 @@ impl Shell {
         if self.after_saving.is_none() || self.file_dialog.is_open() || self.save_path.is_some() {
             return;
         }
-        let is_saved = !self.workbench.document().is_some_and(Document::is_unsaved);
+        if self.workbench.is_saving() {
+            return;
+        }
+        let has_failed = (self.workbench.notices().last())
+            .is_some_and(|notice| notice.kind == NoticeKind::Error && !notice.is_of_opening);
+        let is_saved = !has_failed && !self.workbench.document().is_some_and(Document::is_unsaved);
         if is_saved {
             if let Some(pending) = self.after_saving.take() {
                 self.carry_out(ctx, pending);
@@ -105,8 +111,15 @@ impl Shell {
     }
 
     pub(super) fn guard_closing(&mut self, ctx: &Context) {
-        let is_unsaved = self.workbench.document().is_some_and(Document::is_unsaved);
-        if ctx.input(|input| input.viewport().close_requested()) && is_unsaved && !self.is_quitting {
+        if !ctx.input(|input| input.viewport().close_requested()) {
+            return;
+        }
+        if self.workbench.is_saving() {
+            // The file is on its way: the window closes when it has arrived, and stays if it cannot.
+            ctx.send_viewport_cmd(ViewportCommand::CancelClose);
+            self.is_quitting = false;
+            self.after_saving = Some(Pending::Quit);
+        } else if self.workbench.document().is_some_and(Document::is_unsaved) && !self.is_quitting {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             self.unsaved_question = Some(Pending::Quit);
         }

@@ -7,8 +7,8 @@ use egui::{
     TextStyle, TextWrapMode, Ui, WidgetInfo, WidgetText, pos2, vec2,
 };
 
+use crate::app::Command;
 use crate::app::jobs::{JobOutcome, Slot, Wake};
-use crate::app::{Command, NoticeKind};
 use crate::session::samples;
 use crate::text::shell as shell_words;
 use crate::text::start as words;
@@ -160,16 +160,20 @@ fn path_row(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut StartState,
     });
 }
 
-/// What went wrong, right below the field where it was typed.
+/// What went wrong with opening, right below the field where it was typed.
 fn errors(ui: &mut Ui, context: &mut PanelContext<'_>) {
-    for notice in context.workbench.notices().iter().filter(|notice| notice.kind == NoticeKind::Error) {
-        ui.horizontal_top(|ui| {
+    for notice in context.workbench.notices().iter().filter(|notice| notice.is_of_opening) {
+        ui.horizontal(|ui| {
             let color = theme::palette(ui).bad;
             ui.label(egui::RichText::new("✖").color(color));
-            if symbol_button(ui, "×", shell_words::DISMISS).clicked() {
-                context.commands.push(Command::DismissNotice(notice.id));
-            }
-            ui.add(egui::Label::new(egui::RichText::new(&notice.message).color(color)).wrap());
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                if symbol_button(ui, "×", shell_words::DISMISS).clicked() {
+                    context.commands.push(Command::DismissNotice(notice.id));
+                }
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                    ui.add(egui::Label::new(egui::RichText::new(&notice.message).color(color)).wrap());
+                });
+            });
         });
     }
 }

@@ -1,6 +1,6 @@
 //! White cards with a header row, the frame of everything in the window.
 
-use egui::{Align, Button, Frame, Layout, Response, RichText, Sense, Stroke, Ui, UiBuilder, vec2};
+use egui::{Align, Frame, Layout, Response, RichText, Sense, Stroke, Ui, UiBuilder, vec2};
 
 use crate::ui::theme;
 
@@ -62,18 +62,7 @@ fn heading_row(ui: &mut Ui, title: RichText, right: impl FnOnce(&mut Ui)) {
     ui.add_space(1.0);
 }
 
-/// A small outlined label, e.g. for the pose convention; `explanation` shows on hover.
+/// A small plain text, e.g. for the pose convention; `explanation` shows on hover.
 pub fn chip(ui: &mut Ui, text: &str, explanation: &str) -> Response {
-    let palette = theme::palette(ui);
-    let label = Button::new(RichText::new(text).size(theme::SMALL_SIZE))
-        .sense(Sense::hover())
-        .stroke(Stroke::new(1.0, palette.hairline))
-        .min_size(vec2(0.0, theme::ROW_HEIGHT));
-    ui.scope(|ui| {
-        ui.spacing_mut().button_padding = vec2(8.0, 2.0);
-        ui.spacing_mut().interact_size.y = theme::ROW_HEIGHT;
-        ui.add(label)
-    })
-    .inner
-    .on_hover_text(explanation)
+    ui.label(theme::dim(ui, text).size(theme::SMALL_SIZE)).on_hover_text(explanation)
 }

@@ -1,6 +1,6 @@
 //! Small controls whose visible text is shorter than the name that a screen reader needs.
 
-use egui::{Button, Response, RichText, Role, Ui, WidgetInfo};
+use egui::{Button, Response, RichText, Role, ScrollArea, Ui, WidgetInfo};
 
 use crate::ui::theme;
 
@@ -24,4 +24,17 @@ pub fn symbol_button(ui: &mut Ui, symbol: &str, name: &str) -> Response {
 pub fn primary_button(ui: &mut Ui, text: &str) -> Response {
     let palette = theme::palette(ui);
     ui.add(Button::new(theme::strong(text).color(palette.on_accent)).fill(palette.accent).stroke((0.0, palette.accent)))
+}
+
+/// Makes a scroll area begin at its top; new with every document, as egui keeps the place of the one before.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FromTop {
+    is_done: bool,
+}
+
+impl FromTop {
+    /// The scroll area, at its top if it is shown for the first time.
+    pub fn apply(&mut self, area: ScrollArea) -> ScrollArea {
+        if std::mem::replace(&mut self.is_done, true) { area } else { area.vertical_scroll_offset(0.0) }
+    }
 }
