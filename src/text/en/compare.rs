@@ -120,13 +120,13 @@ pub const BASE_FROM_SENSOR: &str = "base_from_sensor";
 /// The headline beside the verdict; the figure follows in the second weight.
 #[must_use]
 pub fn headline(distance_mm: &str) -> String {
-    format!("a point at {distance_mm} mm is known to")
+    format!("a point at {distance_mm} mm:")
 }
 
 /// The same where the session states no distance.
 #[must_use]
 pub fn headline_amid_balls(z_mm: &str) -> String {
-    format!("a point amid the balls seen, z = {z_mm} mm, is known to")
+    format!("a point amid the balls seen, z = {z_mm} mm:")
 }
 
 /// The method behind the verdict; `is_continued` by the headline.
@@ -150,7 +150,7 @@ pub fn verdict_of(method: &str) -> String {
 /// Beginning of the comparison.
 #[must_use]
 pub fn maximum_error(method: &str) -> String {
-    format!("{method}: maximum error")
+    format!("{method}: max error")
 }
 
 /// End of the comparison.
@@ -165,7 +165,7 @@ pub fn no_better_than(baseline: &str, error_mm: &str) -> String {
     format!("no better than {baseline} ({error_mm} mm)")
 }
 
-/// What "maximum error" means.
+/// What "max error" means.
 pub const MAXIMUM_ERROR_HINT: &str = "As in the paper: the largest coordinate of any station's ball relative to the first station's. A small value alone proves little; see the left-out error";
 
 /// Figures at the right of a method's head.
