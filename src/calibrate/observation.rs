@@ -2,14 +2,10 @@
 
 use nalgebra::SMatrix;
 
-use crate::geometry::so3::hat;
 use crate::geometry::{Mat3, Rigid, Vec3};
 
 /// The nine unknowns: sensor on the flange (rotation, translation; right perturbation), ball in the base.
 pub const NUM_UNKNOWNS: usize = 9;
-
-/// Derivative of the ball's centre in the sensor frame by the nine unknowns.
-pub type CentreJacobian = SMatrix<f64, 3, NUM_UNKNOWNS>;
 
 /// A quadratic in the ball's centre `s` in the sensor frame:
 /// `(s − c)ᵀ W (s − c) − 2 gᵀ (s − c)` with the linearisation point `c`, the information `W` and the pull `g`.
@@ -82,17 +78,6 @@ impl State {
         (centre, sensor_from_base)
     }
 
-    /// Derivative of the ball's centre in the sensor frame by the nine unknowns.
-    #[must_use]
-    pub fn centre_jacobian(&self, base_from_flange: &Rigid) -> CentreJacobian {
-        let (centre, sensor_from_base) = self.ball_in_sensor_and_rotation(base_from_flange);
-        let mut jacobian = CentreJacobian::zeros();
-        jacobian.fixed_view_mut::<3, 3>(0, 0).copy_from(&hat(centre));
-        jacobian.fixed_view_mut::<3, 3>(0, 3).copy_from(&-Mat3::identity());
-        jacobian.fixed_view_mut::<3, 3>(0, 6).copy_from(&sensor_from_base);
-        jacobian
-    }
-
     /// The state after a step in the tangent.
     #[must_use]
     pub fn stepped(&self, step: &SMatrix<f64, NUM_UNKNOWNS, 1>) -> Self {
@@ -100,40 +85,6 @@ impl State {
         Self {
             flange_from_sensor: self.flange_from_sensor * crate::geometry::se3::exp(&tangent),
             ball_in_base: self.ball_in_base + step.fixed_rows::<3>(6),
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use nalgebra::{Translation3, UnitQuaternion};
-
-    use super::*;
-
-    #[test]
-    fn jacobian_agrees_with_differences_near_identity_and_near_a_half_turn() {
-        for roll in [0.0, 0.4, std::f64::consts::PI - 1e-7] {
-            let state = State {
-                flange_from_sensor: Rigid::from_parts(
-                    Translation3::new(12.0, -3.0, 118.0),
-                    UnitQuaternion::from_euler_angles(roll, 0.1, -1.5),
-                ),
-                ball_in_base: Vec3::new(600.0, -40.0, 20.0),
-            };
-            let base_from_flange = Rigid::from_parts(
-                Translation3::new(580.0, -60.0, 220.0),
-                UnitQuaternion::from_euler_angles(3.1, 0.2, 0.7),
-            );
-            let jacobian = state.centre_jacobian(&base_from_flange);
-            for column in 0..NUM_UNKNOWNS {
-                let mut step = SMatrix::<f64, NUM_UNKNOWNS, 1>::zeros();
-                step[column] = 1e-5;
-                let numeric = (state.stepped(&step).ball_in_sensor(&base_from_flange)
-                    - state.stepped(&-step).ball_in_sensor(&base_from_flange))
-                    / 2e-5;
-                // Rounding of 600 mm over the step, truncation step² × 100 mm.
-                assert!((numeric - jacobian.column(column)).norm() < 1e-7, "column {column} at roll {roll}");
-            }
         }
     }
 }

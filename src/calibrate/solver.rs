@@ -162,10 +162,14 @@ impl Normal {
     }
 }
 
+/// The diagonal matrix that scales the diagonal of `scaling * hessian * scaling` to one, so that mm and rad compare.
+fn unit_diagonal_scaling(hessian: &Hessian) -> Hessian {
+    Hessian::from_diagonal(&hessian.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 0.0 }))
+}
+
 /// Solves `(H + damping diag H) step = gradient` with the diagonal scaled to one, so that mm and rad compare.
 fn solve_scaled(hessian: &Hessian, gradient: &Gradient, damping: f64) -> Result<Gradient, SolveError> {
-    let scale = hessian.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 0.0 });
-    let scaling = Hessian::from_diagonal(&scale);
+    let scaling = unit_diagonal_scaling(hessian);
     let scaled = scaling * hessian * scaling + Hessian::identity() * damping;
     let Some(factor) = scaled.cholesky() else {
         return Err(undetermined(hessian));
@@ -178,8 +182,7 @@ fn solve_scaled(hessian: &Hessian, gradient: &Gradient, damping: f64) -> Result<
 /// # Errors
 /// [`SolveError::Undetermined`] if a combination of the unknowns is free.
 pub fn covariance_for_unit_noise(hessian: &Hessian) -> Result<Hessian, SolveError> {
-    let scale = hessian.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 0.0 });
-    let scaling = Hessian::from_diagonal(&scale);
+    let scaling = unit_diagonal_scaling(hessian);
     let condition = scaled_condition(hessian);
     match (scaling * hessian * scaling).cholesky() {
         Some(factor) if condition < MAX_CONDITION => Ok(scaling * factor.inverse() * scaling),
@@ -198,8 +201,7 @@ fn undetermined(hessian: &Hessian) -> SolveError {
 /// Condition number of the normal equations after scaling their diagonal to one.
 #[must_use]
 pub fn scaled_condition(hessian: &Hessian) -> f64 {
-    let scale = hessian.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 0.0 });
-    let scaling = Hessian::from_diagonal(&scale);
+    let scaling = unit_diagonal_scaling(hessian);
     let eigenvalues = (scaling * hessian * scaling).symmetric_eigenvalues();
     let least = eigenvalues.min();
     if least > 0.0 { eigenvalues.max() / least } else { f64::INFINITY }
@@ -209,4 +211,58 @@ pub fn scaled_condition(hessian: &Hessian) -> f64 {
 #[must_use]
 pub fn sensor_block(covariance: &Hessian) -> Matrix6<f64> {
     covariance.fixed_view::<6, 6>(0, 0).into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Translation3, UnitQuaternion};
+
+    use super::*;
+    use crate::geometry::Rigid;
+
+    fn unit_step(column: usize, size: f64) -> Gradient {
+        let mut step = Gradient::zeros();
+        step[column] = size;
+        step
+    }
+
+    /// The sums that the solver steps by, against differences, near the identity and near a half turn.
+    #[test]
+    fn sums_agree_with_differences() {
+        const STEP: f64 = 1e-5;
+        let base_from_flange =
+            Rigid::from_parts(Translation3::new(580.0, -60.0, 220.0), UnitQuaternion::from_euler_angles(3.1, 0.2, 0.7));
+        for roll in [0.0, 0.4, std::f64::consts::PI - 1e-7] {
+            let state = State {
+                flange_from_sensor: Rigid::from_parts(
+                    Translation3::new(12.0, -3.0, 118.0),
+                    UnitQuaternion::from_euler_angles(roll, 0.1, -1.5),
+                ),
+                ball_in_base: Vec3::new(600.0, -40.0, 20.0),
+            };
+            let exact = CentreObservation {
+                information: Mat3::new(2.0, 0.3, -0.2, 0.3, 1.0, 0.4, -0.2, 0.4, 3.0),
+                ..CentreObservation::point(0, base_from_flange, state.ball_in_sensor(&base_from_flange))
+            };
+            let pulled = CentreObservation {
+                centre_in_sensor: exact.centre_in_sensor + Vec3::new(0.5, -0.2, 0.1),
+                pull: Vec3::new(0.3, 0.7, -0.4),
+                ..exact.clone()
+            };
+            let sums = |observation, state: &State| Normal::of(std::iter::once(observation), state);
+            let gradient = sums(&pulled, &state).gradient;
+            let hessian = sums(&exact, &state).hessian;
+            for column in 0..NUM_UNKNOWNS {
+                let (ahead, behind) =
+                    (state.stepped(&unit_step(column, STEP)), state.stepped(&unit_step(column, -STEP)));
+                let by_cost = (sums(&pulled, &behind).cost - sums(&pulled, &ahead).cost) / (4.0 * STEP);
+                // Rounding of 600 mm over the step, truncation step² of the terms.
+                assert!((gradient[column] - by_cost).abs() < 1e-7 * (1.0 + by_cost.abs()), "gradient {column}, {roll}");
+                // Where nothing pulls, the second derivative is JᵀWJ exactly.
+                let by_gradient = (sums(&exact, &behind).gradient - sums(&exact, &ahead).gradient) / (2.0 * STEP);
+                let difference = (hessian.column(column) - by_gradient).norm();
+                assert!(difference < 1e-7 * (1.0 + by_gradient.norm()), "hessian {column}, {roll}: {difference}");
+            }
+        }
+    }
 }
