@@ -6,27 +6,30 @@
 //!
 //! | floor | module | holds |
 //! | --- | --- | --- |
-//! | 9 | `main.rs` | arguments, then the window or a command |
-//! | 8 | [`cli`] | the commands without a window |
-//! | 7 | [`ui`] | egui panels: the only code that names egui |
-//! | 6 | [`app`] | the workbench: document, history, results, jobs, notices |
-//! | 5 | [`report`] | result files, digits |
-//! | 4 | [`text`], [`simulate`] | wording · simulated sessions |
-//! | 3 | [`session`] | the document: model, file format, checks, history, measuring |
+//! | 10 | `main.rs` | arguments, then the window or a command |
+//! | 9 | [`cli`] | the commands without a window |
+//! | 8 | [`ui`] | egui panels: the only code that names egui |
+//! | 7 | [`app`] | the workbench: document, history, results, jobs, notices |
+//! | 6 | [`report`] | result files, digits |
+//! | 5 | [`text`] | wording |
+//! | 4 | [`diagnose`], [`simulate`] | what is wrong with a session, and its remedies · simulated sessions |
+//! | 3 | [`session`], [`plan`] | the document: model, file format, checks, history, measuring · where to measure next |
 //! | 2 | [`calibrate`] | hand-eye methods, least squares on SE(3), uncertainty, validation |
 //! | 1 | [`fit`] | circle fits and the extraction of arcs |
 //! | 0 | [`geometry`], [`watch`] | frames, rotations, conventions, profile, statistics · progress and cancel |
 //!
 //! # Invariants
-//! - `geometry`, `fit` and `calibrate` are pure: no I/O, threads, clock or unseeded randomness. Same input, same bits.
+//! - `geometry`, `fit`, `calibrate`, `plan` and `diagnose` are pure: no I/O, threads, clock or unseeded randomness. Same input, same bits.
 //! - Every transform is named `dst_from_src`. Millimetres and radians inside; degrees only at the edges, in the name.
 //! - A poor result is not an error: it is a solution with warnings. An error means that nothing could be computed.
 
 pub mod app;
 pub mod calibrate;
 pub mod cli;
+pub mod diagnose;
 pub mod fit;
 pub mod geometry;
+pub mod plan;
 pub mod report;
 pub mod session;
 pub mod simulate;

@@ -5,22 +5,24 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// A module may name only floors below its own.
-const FLOORS: [(&str, u8); 11] = [
+const FLOORS: [(&str, u8); 13] = [
     ("geometry", 0),
     ("watch", 0),
     ("fit", 1),
     ("calibrate", 2),
+    ("plan", 3),
     ("session", 3),
+    ("diagnose", 4),
     ("simulate", 4),
-    ("text", 4),
-    ("report", 5),
-    ("app", 6),
-    ("ui", 7),
-    ("cli", 8),
+    ("text", 5),
+    ("report", 6),
+    ("app", 7),
+    ("ui", 8),
+    ("cli", 9),
 ];
 
 /// Floors without I/O, threads, clock, log or serde: same input, same bits.
-const PURE: [&str; 3] = ["geometry", "fit", "calibrate"];
+const PURE: [&str; 5] = ["geometry", "fit", "calibrate", "plan", "diagnose"];
 const IMPURE_NAMES: [&str; 7] = ["std::fs", "std::thread", "std::time", "std::io", "serde", "log::", "rand_core"];
 
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {

@@ -34,7 +34,7 @@ fn reading() -> impl Strategy<Value = Reading> {
 
 fn station() -> impl Strategy<Value = Station> {
     let capture = (pose(), reading(), prop::option::of(-1e3..1e3)).prop_map(|(base_from_flange, reading, step_mm)| {
-        Capture { base_from_flange, reading, step_mm, unknown: serde_json::Map::new() }
+        Capture { base_from_flange, written_angles: None, reading, step_mm, unknown: serde_json::Map::new() }
     });
     let side =
         prop_oneof![Just(SideChoice::Auto), Just(SideChoice::Given(Side::Plus)), Just(SideChoice::Given(Side::Minus))];

@@ -1,6 +1,6 @@
 //! Calibrations side by side: how they differ, which is better by how much, and what a paper printed.
 
-use crate::calibrate::{Method, MethodResult, Solution};
+use crate::calibrate::{Method, MethodResult, Solution, solution_of};
 use crate::geometry::Vec3;
 use crate::session::{Published, Truth};
 
@@ -41,20 +41,6 @@ pub fn difference(first: &Solution, second: &Solution) -> Difference {
         workspace_point_mm,
         in_stds,
     }
-}
-
-/// The solution of a method, if it has one.
-#[must_use]
-pub fn solution_of(results: &[MethodResult], method: Method) -> Option<&Solution> {
-    results.iter().find(|result| result.method == method).and_then(|result| result.outcome.as_ref().ok())
-}
-
-/// The solution to use: of the bundle, else of the whole curve, else of the fixed point, else of the published stop.
-#[must_use]
-pub fn best_available(results: &[MethodResult]) -> Option<&Solution> {
-    [Method::BallBundle, Method::BallMaxArc, Method::BallFixedPoint, Method::BallMaxArcStep]
-        .into_iter()
-        .find_map(|method| solution_of(results, method))
 }
 
 /// The paper's "maximum error": the largest coordinate of any station's ball relative to the first station's, mm.

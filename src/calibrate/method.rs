@@ -79,3 +79,17 @@ pub fn solve_all(
     }
     Ok(results)
 }
+
+/// The solution of a method, if it has one.
+#[must_use]
+pub fn solution_of(results: &[MethodResult], method: Method) -> Option<&Solution> {
+    results.iter().find(|result| result.method == method).and_then(|result| result.outcome.as_ref().ok())
+}
+
+/// The solution to use: of the bundle, else of the whole curve, else of the fixed point, else of the published stop.
+#[must_use]
+pub fn best_available(results: &[MethodResult]) -> Option<&Solution> {
+    [Method::BallBundle, Method::BallMaxArc, Method::BallFixedPoint, Method::BallMaxArcStep]
+        .into_iter()
+        .find_map(|method| solution_of(results, method))
+}

@@ -12,6 +12,7 @@ pub mod error;
 pub mod method;
 pub mod observation;
 pub mod problem;
+pub mod reduced;
 pub mod rotation_start;
 pub mod solution;
 pub mod solver;
@@ -21,8 +22,9 @@ pub mod verdict;
 pub mod warning;
 
 pub use error::SolveError;
-pub use method::{Method, MethodResult, solve, solve_all};
+pub use method::{Method, MethodResult, best_available, solution_of, solve, solve_all};
 pub use problem::{BallProblem, Capture, Mount, Noise, Reading, Side, SideChoice, Station};
+pub use reduced::Reduced;
 pub use solution::{RmsMax, Solution, StationSolution, Sweep, SweepPoint, Uncertainty};
 pub use verdict::{Verdict, VerdictReason};
 pub use warning::Warning;

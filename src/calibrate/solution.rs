@@ -1,10 +1,10 @@
 //! What a method computes, and how good it is.
 
-use nalgebra::Matrix6;
+use nalgebra::{Matrix6, Vector6};
 
 use crate::geometry::{Flange, Mat3, Sensor, Transform, Vec3};
 
-use super::{Method, Mount, Side, Warning};
+use super::{Method, Mount, Reduced, Side, Warning};
 
 /// Root mean square and maximum of some distances, mm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -29,9 +29,23 @@ pub struct Uncertainty {
     pub workspace_point_std_mm: f64,
     /// The point that the headline speaks of, mm.
     pub reference_point_in_sensor_mm: Vec3,
+    /// Covariance of that point along the flange's axes, mm².
+    pub workspace_point_covariance: Mat3,
+    /// Degrees of freedom behind the covariance; infinite where the noise is stated, few where it was estimated from little.
+    pub degrees_of_freedom: f64,
+    /// The ball that holds the true workspace point with 95 %: its radius, mm.
+    pub workspace_point_95_mm: f64,
 }
 
 impl Uncertainty {
+    /// The direction (unit vector in the flange) in which the workspace point is known worst, and its σ there, mm.
+    #[must_use]
+    pub fn weakest_direction(&self) -> (Vec3, f64) {
+        let eigen = self.workspace_point_covariance.symmetric_eigen();
+        let worst = eigen.eigenvalues.imax();
+        (eigen.eigenvectors.column(worst).into_owned(), eigen.eigenvalues[worst].max(0.0).sqrt())
+    }
+
     /// Covariance of the rotation as a right perturbation, rad².
     #[must_use]
     pub fn rotation_covariance(&self) -> Mat3 {
@@ -127,4 +141,11 @@ pub struct Solution {
     pub warnings: Vec<Warning>,
     /// Iterations of the last solve.
     pub num_iterations: usize,
+    /// The data at the minimum, for validation, diagnosis and planning.
+    pub reduced: Reduced,
+    /// How the result follows the ball's radius: change of (rotation about the sensor's axes in rad, translation along the
+    /// flange's axes in mm) a mm of radius.
+    pub change_by_radius: Vector6<f64>,
+    /// The same for the workspace point, along the flange's axes, mm a mm.
+    pub workspace_point_by_radius: Vec3,
 }

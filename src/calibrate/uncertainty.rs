@@ -20,16 +20,17 @@ pub fn uncertainty(
     let mut to_flange_axes = Matrix6::identity();
     to_flange_axes.fixed_view_mut::<3, 3>(3, 3).copy_from(rotation.matrix());
     let covariance = to_flange_axes * right_covariance * to_flange_axes.transpose();
+    let in_sensor = point_covariance(right_covariance, reference_point_in_sensor_mm);
     let std = |idx: usize| covariance[(idx, idx)].max(0.0).sqrt();
     Uncertainty {
         covariance,
         translation_std_mm: Vec3::new(std(3), std(4), std(5)),
         rotation_std_rad: Vec3::new(std(0), std(1), std(2)),
-        workspace_point_std_mm: point_covariance(right_covariance, reference_point_in_sensor_mm)
-            .trace()
-            .max(0.0)
-            .sqrt(),
+        workspace_point_std_mm: in_sensor.trace().max(0.0).sqrt(),
         reference_point_in_sensor_mm,
+        workspace_point_covariance: rotation.matrix() * in_sensor * rotation.matrix().transpose(),
+        degrees_of_freedom: f64::INFINITY,
+        workspace_point_95_mm: 2.8 * in_sensor.trace().max(0.0).sqrt(),
     }
 }
 

@@ -1,9 +1,92 @@
 //! Leave-one-station-out: the error that the residual hides.
 
 use crate::geometry::{Mat3, Vec3};
+use crate::watch::{Cancelled, Watch};
 
+use super::Solution;
 use super::observation::{CentreObservation, State};
 use super::solver::{Normal, minimise_from};
+
+/// What one station means for the result.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Influence {
+    /// The caller's index of the station.
+    pub station_idx: usize,
+    /// The user's name for it.
+    pub label: String,
+    /// Residual of the station as a whole over what its noise and its pull on the result let one expect.
+    pub studentised_residual: f64,
+    /// Probability of so large a residual by chance, in this one station.
+    pub p_value: f64,
+    /// How far the workspace point moves when the station is left out, mm.
+    pub moves_workspace_point_mm: f64,
+}
+
+/// Calibrations from two halves of the stations, for many ways to halve them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SplitHalf {
+    /// How far apart the two halves put the workspace point, mm, rising.
+    pub disagreements_mm: Vec<f64>,
+    /// Their median, mm.
+    pub median_mm: f64,
+    /// The largest, mm.
+    pub max_mm: f64,
+    /// The median that the stated σ lets one expect, mm.
+    pub expected_mm: f64,
+}
+
+/// Whether the residuals are normally distributed (Anderson and Darling's test on whitened residuals).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Normality {
+    /// Probability of such residuals by chance.
+    pub p_value: f64,
+    /// `[quantile of the normal distribution, residual over its σ]`, rising.
+    pub quantiles: Vec<[f64; 2]>,
+}
+
+/// How much a solution can be relied on, beyond its residual and its σ.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Validation {
+    /// One entry a station used, in order.
+    pub influence: Vec<Influence>,
+    /// `None` with fewer than eight stations: a half needs four.
+    pub split_half: Option<SplitHalf>,
+    /// `None` with too few residuals.
+    pub normality: Option<Normality>,
+}
+
+/// The spread of the result over stations drawn with replacement.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bootstrap {
+    /// Distance of the workspace point from that of the result, one entry a draw, mm, rising.
+    pub distances_mm: Vec<f64>,
+    /// Their root mean square: to be held against `workspace_point_std_mm`, mm.
+    pub std_mm: f64,
+    /// 95 % of the draws are within this, mm.
+    pub within_95_mm: f64,
+    /// Draws without a solution.
+    pub num_failed: usize,
+}
+
+/// Validates a solution; `None` with too few stations for any of it.
+#[must_use]
+pub fn validate(_solution: &Solution) -> Option<Validation> {
+    None
+}
+
+/// Solves `num_draws` times with stations drawn with replacement. The same seed gives the same draws.
+///
+/// # Errors
+/// [`Cancelled`] if `watch` says so.
+pub fn bootstrap(
+    _solution: &Solution,
+    num_draws: usize,
+    _seed: u64,
+    watch: &mut dyn Watch,
+) -> Result<Bootstrap, Cancelled> {
+    watch.report(0, num_draws)?;
+    Ok(Bootstrap { distances_mm: Vec::new(), std_mm: 0.0, within_95_mm: 0.0, num_failed: num_draws })
+}
 
 /// With fewer stations than this nothing is left over once one is taken away.
 pub const MIN_STATIONS: usize = 5;

@@ -235,6 +235,7 @@ mod tests {
                     Vec3::new(500.0, y_mm, 300.0),
                     so3::exp(Vec3::x() * f64::from(idx)),
                 ),
+                written_angles: None,
                 reading: Reading::Profile(Arc::new(Profile::new(vec![0.0], &[Some(80.0)]).expect("valid"))),
                 step_mm,
                 unknown: UnknownFields::new(),

@@ -12,4 +12,4 @@ pub use error::SessionError;
 pub use format::{load, parse, save, to_json};
 pub use history::History;
 pub use measure::{Measured, NotABallSession, ball_problem, measure};
-pub use model::{Capture, Edge, Published, Reading, Robot, Sensor, Session, Station, Target, Truth};
+pub use model::{Capture, Edge, Published, Reading, Robot, Sensor, Session, Station, Target, Truth, WrittenAngles};

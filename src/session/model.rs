@@ -90,11 +90,23 @@ pub enum Reading {
     Point(Vec3),
 }
 
+/// An orientation as the file has it in three numbers, before it became a quaternion: what it was meant to be can only be
+/// asked of these.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WrittenAngles {
+    /// The three numbers, in degrees as far as the file says.
+    pub angles_deg: [f64; 3],
+    /// How the file says that they are to be read.
+    pub convention: &'static PoseConvention,
+}
+
 /// One pose of the robot with what was measured there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Capture {
     /// The pose that the controller reported.
     pub base_from_flange: Transform<Base, Flange>,
+    /// The orientation as it was written, where it was in three numbers.
+    pub written_angles: Option<WrittenAngles>,
     /// What was measured.
     pub reading: Reading,
     /// The commanded move from the capture before, signed, mm.

@@ -122,6 +122,7 @@ fn station(
                     is_bad,
                     &mut randoms.pose,
                 )),
+                written_angles: None,
                 reading: Reading::Profile(Arc::new(profile)),
                 step_mm: (capture_idx > 0).then_some(path.step_mm),
                 unknown: UnknownFields::new(),

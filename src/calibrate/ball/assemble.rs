@@ -1,12 +1,14 @@
 //! From a minimum to a solution: error tables, validation, uncertainty and the warnings that all methods share.
 
+use nalgebra::Vector6;
+
 use crate::calibrate::observation::{CentreObservation, State};
 use crate::calibrate::rotation_start::{PoseGeometry, rotation_span};
 use crate::calibrate::solver::{Minimum, covariance_for_unit_noise, sensor_block};
 use crate::calibrate::uncertainty::uncertainty;
 use crate::calibrate::validation::{leave_one_out, station_ball};
 use crate::calibrate::{
-    BallProblem, Method, RmsMax, Side, Solution, SolveError, Station, StationSolution, Sweep, Warning,
+    BallProblem, Method, Reduced, RmsMax, Side, Solution, SolveError, Station, StationSolution, Sweep, Warning,
 };
 use crate::geometry::{Rigid, Transform, Vec3, stats};
 
@@ -104,6 +106,16 @@ impl Found<'_> {
             rotation_span_rad: span,
             warnings: self.warnings,
             num_iterations: self.minimum.num_iterations,
+            reduced: Reduced {
+                observations: self.observations,
+                num_stations,
+                state,
+                hessian: self.minimum.hessian,
+                prior_information: self.prior_information,
+                variance_factor: self.variance_factor,
+            },
+            change_by_radius: Vector6::zeros(),
+            workspace_point_by_radius: Vec3::zeros(),
         })
     }
 

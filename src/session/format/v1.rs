@@ -223,7 +223,13 @@ fn capture(cursor: &Cursor<'_>, mended: &mut Mended) -> Result<Capture, Refusal>
         (Some(_), Some(_)) => return Err(cursor.refuse_as("both profile and point_mm", either)),
         (None, None) => return Err(cursor.refuse_as("neither profile nor point_mm", either)),
     };
-    Ok(Capture { base_from_flange, reading, step_mm: object.optional_number("step", &limits::STEP_MM)?, unknown })
+    Ok(Capture {
+        base_from_flange,
+        written_angles: None,
+        reading,
+        step_mm: object.optional_number("step", &limits::STEP_MM)?,
+        unknown,
+    })
 }
 
 fn profile(cursor: &Cursor<'_>, unknown: &mut UnknownFields) -> Result<Profile, Refusal> {

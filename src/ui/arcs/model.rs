@@ -1,8 +1,7 @@
 //! What the arcs panel draws, made without egui from the session and what was measured in it.
 
 use crate::app::Results;
-use crate::app::compare::solution_of;
-use crate::calibrate::{self, Method, Sweep};
+use crate::calibrate::{self, Method, Sweep, solution_of};
 use crate::fit::{ArcFit, Circle, CircleMethod, PointClass};
 use crate::geometry::Profile;
 use crate::session::{Reading, Session, Target};

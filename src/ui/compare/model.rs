@@ -2,10 +2,11 @@
 
 use nalgebra::Matrix4;
 
-use crate::app::compare::{
-    self, Difference, Improvement, PublishedRow, ScatterEllipse, TruthDistance, best_available, solution_of,
+use crate::app::compare::{self, Difference, Improvement, PublishedRow, ScatterEllipse, TruthDistance};
+use crate::calibrate::{
+    Method, MethodResult, Mount, Solution, StationSolution, Verdict, VerdictReason, best_available, solution_of,
+    verdict,
 };
-use crate::calibrate::{Method, MethodResult, Mount, Solution, StationSolution, Verdict, VerdictReason, verdict};
 use crate::geometry::Vec3;
 use crate::session::Session;
 use crate::text;

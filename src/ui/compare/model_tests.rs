@@ -1,10 +1,12 @@
 //! The comparison's model against solutions made by hand.
 
-use nalgebra::{Matrix6, UnitQuaternion};
+use nalgebra::{Matrix6, UnitQuaternion, Vector6};
 
 use super::*;
-use crate::calibrate::{RmsMax, Side, SolveError, Uncertainty, Warning};
-use crate::geometry::Transform;
+use crate::calibrate::observation::State;
+use crate::calibrate::solver::Hessian;
+use crate::calibrate::{Reduced, RmsMax, Side, SolveError, Uncertainty, Warning};
+use crate::geometry::{Mat3, Rigid, Transform};
 use crate::session::model::UnknownFields;
 use crate::session::{Robot, Sensor, Station, Target, Truth};
 
@@ -50,6 +52,9 @@ fn solution(method: Method, shift_mm: f64, errors_mm: &[Vec3]) -> Solution {
             rotation_std_rad: Vec3::zeros(),
             workspace_point_std_mm: 0.06,
             reference_point_in_sensor_mm: Vec3::new(0.0, 0.0, 60.0),
+            workspace_point_covariance: Mat3::identity() * 0.0012,
+            degrees_of_freedom: f64::INFINITY,
+            workspace_point_95_mm: 0.1,
         }),
         // Station b is missing, as if it had been skipped.
         stations: [0, 2]
@@ -72,6 +77,16 @@ fn solution(method: Method, shift_mm: f64, errors_mm: &[Vec3]) -> Solution {
         rotation_span_rad: 1.0,
         warnings: vec![Warning::FewStations { num_stations: 2, recommended: 8 }],
         num_iterations: 3,
+        reduced: Reduced {
+            observations: Vec::new(),
+            num_stations: 2,
+            state: State { flange_from_sensor: Rigid::identity(), ball_in_base: Vec3::zeros() },
+            hessian: Hessian::identity(),
+            prior_information: 0.0,
+            variance_factor: None,
+        },
+        change_by_radius: Vector6::zeros(),
+        workspace_point_by_radius: Vec3::zeros(),
     }
 }
 

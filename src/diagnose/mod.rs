@@ -1,0 +1,62 @@
+//! What is wrong with a session, found by trying: each suspicion is a re-solve with one thing changed, and what makes the
+//! residual fall is named, with its evidence and its remedy.
+//!
+//! Data flows `Session` + `BallProblem` + method results → [`diagnose`] → [`Diagnosis`]. Nothing here changes a session;
+//! [`remedy::apply`] makes a changed copy when the user asks for it.
+
+pub mod convention;
+pub mod finding;
+pub mod geometry;
+pub mod hypotheses;
+pub mod remedy;
+pub mod stations;
+
+pub use convention::{PoseReading, ReadingFit};
+pub use finding::{Axis, CurveAxis, Evidence, Fault, Finding, Plot, Severity, StationBar};
+pub use remedy::Remedy;
+
+use crate::calibrate::validation::{Validation, validate};
+use crate::calibrate::{BallProblem, MethodResult, best_available};
+use crate::session::Session;
+use crate::watch::{Cancelled, Watch};
+
+/// What was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Diagnosis {
+    /// The most serious first; empty if there is nothing to object to.
+    pub findings: Vec<Finding>,
+    /// The ways to read the poses, best first; empty where the poses as given fit.
+    pub readings: Vec<ReadingFit>,
+    /// How much the best available solution can be relied on; `None` without one.
+    pub validation: Option<Validation>,
+}
+
+/// Everything that a suspicion may look at.
+#[derive(Clone, Copy, Debug)]
+pub struct Case<'a> {
+    /// The document.
+    pub session: &'a Session,
+    /// Its enabled stations, reduced to arcs.
+    pub problem: &'a BallProblem,
+    /// What the methods made of it.
+    pub results: &'a [MethodResult],
+}
+
+/// Examines a session and its results.
+///
+/// # Errors
+/// [`Cancelled`] if `watch` says so.
+pub fn diagnose(case: Case<'_>, watch: &mut dyn Watch) -> Result<Diagnosis, Cancelled> {
+    const PARTS: usize = 4;
+    watch.report(0, PARTS)?;
+    let mut findings = geometry::examine(case);
+    watch.report(1, PARTS)?;
+    findings.extend(stations::examine(case));
+    watch.report(2, PARTS)?;
+    findings.extend(hypotheses::examine(case));
+    watch.report(3, PARTS)?;
+    let (misread, readings) = convention::examine(case, watch)?;
+    findings.extend(misread);
+    findings.sort_by(Finding::more_serious_first);
+    Ok(Diagnosis { findings, readings, validation: best_available(case.results).and_then(validate) })
+}
