@@ -1,4 +1,5 @@
 //! What leaves the program besides sessions: result files, and numbers with as many digits as are true.
 
-pub mod digits;
 pub mod result_file;
+
+pub use crate::text::digits;

@@ -2,6 +2,7 @@
 //!
 //! Errors carry their own sentence (their `Display`): they are the same in the window and on the command line.
 
+pub mod digits;
 mod en;
 
 pub use en::*;

@@ -2,6 +2,8 @@
 
 use crate::session::check::Finding;
 
+use super::plural;
+
 /// What was found, in one sentence.
 #[must_use]
 pub fn finding_message(finding: &Finding) -> String {
@@ -33,8 +35,4 @@ pub fn finding_message(finding: &Finding) -> String {
             format!("Noise is not given and will be estimated: {}.", fields.join(", "))
         }
     }
-}
-
-const fn plural(count: usize) -> &'static str {
-    if count == 1 { "" } else { "s" }
 }

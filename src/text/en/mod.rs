@@ -4,6 +4,7 @@ pub mod arcs;
 pub mod check;
 pub mod cli;
 pub mod compare;
+pub mod diagnosis;
 pub mod methods;
 pub mod poses;
 pub mod shell;
@@ -14,3 +15,8 @@ pub use check::*;
 pub use cli::*;
 pub use methods::*;
 pub use warnings::*;
+
+/// The ending of a plural.
+const fn plural(count: usize) -> &'static str {
+    if count == 1 { "" } else { "s" }
+}
