@@ -3,6 +3,8 @@
 use std::path::PathBuf;
 
 use crate::calibrate::SideChoice;
+use crate::diagnose::Remedy;
+use crate::plan::Limits;
 
 /// A request from a panel, a shortcut or a test; [`super::Workbench::apply`] carries them out in order.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,6 +33,8 @@ pub enum Command {
         /// The side.
         side: SideChoice,
     },
+    /// Mends the session as a finding proposes, as one edit.
+    ApplyRemedy(Remedy),
     /// Takes the last edit back.
     Undo,
     /// Brings back what was undone.
@@ -39,6 +43,23 @@ pub enum Command {
     Solve,
     /// Stops the solver; the last results stay.
     CancelSolve,
+    /// Examines the results as they are now; needed only after a cancel, as new results are examined by themselves.
+    Diagnose,
+    /// Stops the diagnosis; the last one stays.
+    CancelDiagnosis,
+    /// Tries the other ways to read the poses, even if those given fit.
+    RankReadings,
+    /// Stops trying them.
+    CancelReadings,
+    /// Solves many times with stations drawn with replacement.
+    StartBootstrap {
+        /// How many times.
+        num_draws: usize,
+    },
+    /// Stops that; the last outcome stays.
+    CancelBootstrap,
+    /// Plans the next stations within other limits.
+    SetPlanLimits(Limits),
     /// Removes a notice.
     DismissNotice(u64),
 }

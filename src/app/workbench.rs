@@ -5,12 +5,22 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::calibrate::{Method, MethodResult, solve_all};
+use crate::calibrate::validation::{Bootstrap, bootstrap};
+use crate::calibrate::{BallProblem, Method, MethodResult, best_available, solve_all};
+use crate::diagnose::{self, Case, Diagnosis, ReadingFit, Remedy};
+use crate::plan::{Limits, Plan, PlanRefusal, next_stations};
 use crate::session::{self, History, Measured, Session, SessionError, ball_problem, measure};
+use crate::text::diagnosis::remedy_undo_label;
 use crate::watch::Cancelled;
 
 use super::Command;
 use super::jobs::{JobOutcome, Slot, Wake};
+use super::study::Study;
+
+/// Stations that are planned ahead: about as many as one adds before looking again.
+const NUM_PLANNED: usize = 4;
+/// The same session gives the same bootstrap.
+const BOOTSTRAP_SEED: u64 = 1;
 
 /// The open session.
 #[derive(Clone, Debug)]
@@ -58,6 +68,8 @@ pub struct Results {
     pub revision: u64,
     /// The arcs of all captures.
     pub measured: Arc<Measured>,
+    /// What the methods were given; `None` if the session is none for the ball.
+    pub problem: Option<Arc<BallProblem>>,
     /// One entry a method, in the order of [`Method::ALL`]; empty if the session is none for the ball.
     pub methods: Vec<MethodResult>,
     /// Why there are no methods, in words.
@@ -96,13 +108,22 @@ pub struct Notice {
     pub message: String,
 }
 
-/// Progress of the solver.
+/// Progress of a job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
     /// Parts done.
     pub done: usize,
     /// Parts in all; 0 while unknown.
     pub total: usize,
+}
+
+impl Progress {
+    /// The part that is done, from 0 to 1.
+    #[must_use]
+    #[expect(clippy::cast_precision_loss, reason = "to be seen as a bar of a few hundred points")]
+    pub fn fraction(self) -> f32 {
+        if self.total == 0 { 0.0 } else { self.done as f32 / self.total as f32 }
+    }
 }
 
 /// A session on its way to a file: taken when it was asked for, whatever happens on the bench meanwhile.
@@ -123,8 +144,9 @@ struct Loaded {
 pub struct Workbench {
     wake: Wake,
     document: Option<Document>,
-    results: Option<Results>,
+    results: Option<Arc<Results>>,
     notices: Vec<Notice>,
+    plan_limits: Limits,
     last_revision: u64,
     last_notice_id: u64,
     loading: Slot<Loaded>,
@@ -133,6 +155,10 @@ pub struct Workbench {
     saving: Slot<(Save, Result<(), SessionError>)>,
     save_queue: VecDeque<Save>,
     solving: Slot<Result<Results, Cancelled>>,
+    diagnosis: Study<Diagnosis>,
+    plan: Study<Result<Plan, PlanRefusal>>,
+    readings: Study<Vec<ReadingFit>>,
+    bootstrap: Study<Bootstrap>,
 }
 
 impl Workbench {
@@ -144,6 +170,7 @@ impl Workbench {
             document: None,
             results: None,
             notices: Vec::new(),
+            plan_limits: Limits::default(),
             last_revision: 0,
             last_notice_id: 0,
             loading: Slot::default(),
@@ -151,6 +178,10 @@ impl Workbench {
             revision_before_loading: None,
             save_queue: VecDeque::new(),
             solving: Slot::default(),
+            diagnosis: Study::default(),
+            plan: Study::default(),
+            readings: Study::default(),
+            bootstrap: Study::default(),
         }
     }
 
@@ -162,17 +193,62 @@ impl Workbench {
 
     /// The last results; see [`Self::results_are_current`].
     #[must_use]
-    pub const fn results(&self) -> Option<&Results> {
-        self.results.as_ref()
+    pub fn results(&self) -> Option<&Results> {
+        self.results.as_deref()
     }
 
     /// Whether the results belong to the document as it is now.
     #[must_use]
     pub fn results_are_current(&self) -> bool {
-        match (&self.document, &self.results) {
-            (Some(document), Some(results)) => document.revision == results.revision,
-            _ => false,
-        }
+        self.results.as_ref().is_some_and(|results| self.is_current(results.revision))
+    }
+
+    /// Whether a revision is that of the document as it is now.
+    #[must_use]
+    pub fn is_current(&self, revision: u64) -> bool {
+        self.document.as_ref().is_some_and(|document| document.revision == revision)
+    }
+
+    /// What is wrong with the session. It follows the results by itself.
+    #[must_use]
+    pub const fn diagnosis(&self) -> &Study<Diagnosis> {
+        &self.diagnosis
+    }
+
+    /// The diagnosis of the document as it is now, once it is there.
+    #[must_use]
+    pub fn current_diagnosis(&self) -> Option<&Diagnosis> {
+        self.diagnosis.last().filter(|found| self.is_current(found.revision)).map(|found| &found.value)
+    }
+
+    /// The plan for the document as it is now, once it is there.
+    #[must_use]
+    pub fn current_plan(&self) -> Option<&Plan> {
+        self.plan.last().filter(|found| self.is_current(found.revision)).and_then(|found| found.value.as_ref().ok())
+    }
+
+    /// Where to measure next, for the best available solution. It follows the results by itself.
+    #[must_use]
+    pub const fn plan(&self) -> &Study<Result<Plan, PlanRefusal>> {
+        &self.plan
+    }
+
+    /// Within what limits the next stations are planned.
+    #[must_use]
+    pub const fn plan_limits(&self) -> &Limits {
+        &self.plan_limits
+    }
+
+    /// The ways to read the poses, where they were asked for.
+    #[must_use]
+    pub const fn readings(&self) -> &Study<Vec<ReadingFit>> {
+        &self.readings
+    }
+
+    /// The spread over stations drawn with replacement, where it was asked for.
+    #[must_use]
+    pub const fn bootstrap(&self) -> &Study<Bootstrap> {
+        &self.bootstrap
     }
 
     /// Notices not yet dismissed, oldest first.
@@ -202,7 +278,13 @@ impl Workbench {
     /// Whether any work is under way in the background.
     #[must_use]
     pub const fn is_busy(&self) -> bool {
-        self.loading.is_running() || self.saving.is_running() || self.solving.is_running()
+        self.loading.is_running()
+            || self.saving.is_running()
+            || self.solving.is_running()
+            || self.diagnosis.is_running()
+            || self.plan.is_running()
+            || self.readings.is_running()
+            || self.bootstrap.is_running()
     }
 
     /// Carries out one command.
@@ -221,10 +303,22 @@ impl Workbench {
             Command::SetStationSide { station_idx, side } => {
                 self.edit_station(station_idx, "set side of station", |station| station.side = side);
             }
+            Command::ApplyRemedy(remedy) => self.apply_remedy(&remedy),
             Command::Undo => self.step_history(History::undo),
             Command::Redo => self.step_history(History::redo),
             Command::Solve => self.start_solving(),
             Command::CancelSolve => self.solving.cancel(),
+            Command::Diagnose if self.results_are_current() => self.start_diagnosing(),
+            Command::Diagnose => self.start_solving(),
+            Command::CancelDiagnosis => self.diagnosis.cancel(),
+            Command::RankReadings => self.start_ranking(),
+            Command::CancelReadings => self.readings.cancel(),
+            Command::StartBootstrap { num_draws } => self.start_bootstrap(num_draws),
+            Command::CancelBootstrap => self.bootstrap.cancel(),
+            Command::SetPlanLimits(limits) => {
+                self.plan_limits = limits;
+                self.start_planning();
+            }
             Command::DismissNotice(id) => self.notices.retain(|notice| notice.id != id),
         }
     }
@@ -258,9 +352,21 @@ impl Workbench {
         if let Some(outcome) = self.solving.poll() {
             changed = true;
             match outcome {
-                JobOutcome::Done(Ok(results)) => self.results = Some(results),
+                JobOutcome::Done(Ok(results)) => self.take_results(results),
                 JobOutcome::Done(Err(Cancelled)) => {}
                 broken => self.notify_broken("solving", &broken),
+            }
+        }
+        for (what, ended) in [
+            ("the diagnosis", self.diagnosis.poll()),
+            ("planning", self.plan.poll()),
+            ("trying other conventions", self.readings.poll()),
+            ("the bootstrap", self.bootstrap.poll()),
+        ] {
+            let Some(ended) = ended else { continue };
+            changed = true;
+            if !matches!(ended, JobOutcome::Done(())) {
+                self.notify_broken(what, &ended);
             }
         }
         changed
@@ -271,8 +377,24 @@ impl Workbench {
         self.forget_errors();
         self.last_revision += 1;
         self.document = Some(Document::new(session, path, self.last_revision));
-        self.results = None;
+        self.forget_results();
         self.start_solving();
+    }
+
+    fn forget_results(&mut self) {
+        self.results = None;
+        self.diagnosis.clear();
+        self.plan.clear();
+        self.readings.clear();
+        self.bootstrap.clear();
+        self.plan_limits = Limits::default();
+    }
+
+    /// The results are shown at once; what is to be said about them follows.
+    fn take_results(&mut self, results: Results) {
+        self.results = Some(Arc::new(results));
+        self.start_diagnosing();
+        self.start_planning();
     }
 
     /// What was edited while the file was being read is not thrown away.
@@ -313,7 +435,7 @@ impl Workbench {
         self.loading.cancel();
         self.solving.cancel();
         self.document = None;
-        self.results = None;
+        self.forget_results();
     }
 
     fn save(&mut self) {
@@ -358,14 +480,26 @@ impl Workbench {
     }
 
     fn edit_station(&mut self, station_idx: usize, label: &str, edit: impl FnOnce(&mut session::Station)) {
-        let Some(document) = &mut self.document else { return };
+        let Some(document) = &self.document else { return };
         let mut changed = Session::clone(&document.session);
         let Some(station) = changed.stations.get_mut(station_idx) else { return };
         edit(station);
+        let label = format!("{label} {}", changed.stations[station_idx].label);
+        self.replace_session(changed, label);
+    }
+
+    fn apply_remedy(&mut self, remedy: &Remedy) {
+        let Some(document) = &self.document else { return };
+        let label = remedy_undo_label(remedy, &document.session);
+        self.replace_session(diagnose::remedy::apply(&document.session, remedy), label);
+    }
+
+    /// One edit that can be undone; one that changes nothing is none.
+    fn replace_session(&mut self, changed: Session, label: String) {
+        let Some(document) = &mut self.document else { return };
         if changed == *document.session {
             return;
         }
-        let label = format!("{label} {}", changed.stations[station_idx].label);
         let before = std::mem::replace(&mut document.session, Arc::new(changed));
         document.history.record(label, before);
         self.touch();
@@ -389,6 +523,11 @@ impl Workbench {
     }
 
     fn start_solving(&mut self) {
+        // They would speak of what is about to change; what they have found stays, marked as out of date.
+        self.diagnosis.cancel();
+        self.plan.cancel();
+        self.readings.cancel();
+        self.bootstrap.cancel();
         let Some(document) = &self.document else { return };
         let session = Arc::clone(&document.session);
         let revision = document.revision;
@@ -396,11 +535,57 @@ impl Workbench {
         self.solving.start("solve", &self.wake, move |watch| {
             let start = Instant::now();
             let measured = Arc::new(measure(&session, previous.as_deref(), watch)?);
-            let (methods, refusal) = match ball_problem(&session, &measured) {
-                Ok(problem) => (solve_all(&problem, &Method::ALL, watch)?, None),
-                Err(refusal) => (Vec::new(), Some(refusal.to_string())),
+            let (problem, methods, refusal) = match ball_problem(&session, &measured) {
+                Ok(problem) => {
+                    let methods = solve_all(&problem, &Method::ALL, watch)?;
+                    (Some(Arc::new(problem)), methods, None)
+                }
+                Err(refusal) => (None, Vec::new(), Some(refusal.to_string())),
             };
-            Ok(Results { revision, measured, methods, refusal, elapsed: start.elapsed() })
+            Ok(Results { revision, measured, problem, methods, refusal, elapsed: start.elapsed() })
+        });
+    }
+
+    /// Document, problem and results of the same revision, if there are any.
+    fn case(&self) -> Option<(Arc<Session>, Arc<BallProblem>, Arc<Results>)> {
+        let document = self.document.as_ref()?;
+        let results = self.results.as_ref().filter(|results| results.revision == document.revision)?;
+        let problem = results.problem.as_ref()?;
+        Some((Arc::clone(&document.session), Arc::clone(problem), Arc::clone(results)))
+    }
+
+    fn start_diagnosing(&mut self) {
+        let Some((session, problem, results)) = self.case() else { return };
+        self.diagnosis.start("diagnose", &self.wake, results.revision, move |watch| {
+            diagnose::diagnose(Case { session: &session, problem: &problem, results: &results.methods }, watch)
+        });
+    }
+
+    fn start_ranking(&mut self) {
+        let Some((session, problem, results)) = self.case() else { return };
+        self.readings.start("try conventions", &self.wake, results.revision, move |watch| {
+            let case = Case { session: &session, problem: &problem, results: &results.methods };
+            diagnose::convention::examine(case, watch).map(|(_, readings)| readings)
+        });
+    }
+
+    fn start_planning(&mut self) {
+        let Some((_, problem, results)) = self.case() else { return };
+        let limits = self.plan_limits;
+        self.plan.start("plan", &self.wake, results.revision, move |_| {
+            let solution = best_available(&results.methods).ok_or(PlanRefusal::Undetermined);
+            Ok(solution.and_then(|solution| next_stations(&problem, solution, &limits, NUM_PLANNED)))
+        });
+    }
+
+    fn start_bootstrap(&mut self, num_draws: usize) {
+        let Some((_, _, results)) = self.case() else { return };
+        if best_available(&results.methods).is_none() {
+            return;
+        }
+        self.bootstrap.start("bootstrap", &self.wake, results.revision, move |watch| {
+            best_available(&results.methods)
+                .map_or(Err(Cancelled), |solution| bootstrap(solution, num_draws, BOOTSTRAP_SEED, watch))
         });
     }
 

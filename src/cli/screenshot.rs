@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
 
+use crate::ui::persisted::ThemeChoice;
 use crate::ui::{self, Step};
 
 use super::{EXIT_WRONG_INPUT, fail};
@@ -24,6 +25,9 @@ pub struct ScreenshotArgs {
     /// Width, pixels
     #[arg(long, default_value_t = 1440, value_parser = clap::value_parser!(u32).range(640..=4096))]
     pub width: u32,
+    /// Colours
+    #[arg(long, value_enum, default_value_t = ThemeName::Light)]
+    pub theme: ThemeName,
     /// Height, pixels
     #[arg(long, default_value_t = 900, value_parser = clap::value_parser!(u32).range(480..=4096))]
     pub height: u32,
@@ -40,6 +44,26 @@ pub enum StepName {
     Poses,
     /// Methods side by side
     Compare,
+    /// Findings, validation and the next poses
+    Diagnosis,
+}
+
+/// The themes by their names on the command line.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum ThemeName {
+    /// Dark on light
+    Light,
+    /// Light on dark
+    Dark,
+}
+
+impl From<ThemeName> for ThemeChoice {
+    fn from(name: ThemeName) -> Self {
+        match name {
+            ThemeName::Light => Self::Light,
+            ThemeName::Dark => Self::Dark,
+        }
+    }
 }
 
 impl From<StepName> for Step {
@@ -49,6 +73,7 @@ impl From<StepName> for Step {
             StepName::Arcs => Self::Arcs,
             StepName::Poses => Self::Poses,
             StepName::Compare => Self::Compare,
+            StepName::Diagnosis => Self::Diagnosis,
         }
     }
 }
@@ -56,7 +81,13 @@ impl From<StepName> for Step {
 /// Runs the command.
 #[must_use]
 pub fn run(args: &ScreenshotArgs) -> ExitCode {
-    match ui::screenshot(args.file.as_deref(), args.step.into(), [args.width, args.height], &args.out) {
+    match ui::screenshot(
+        args.file.as_deref(),
+        args.step.into(),
+        args.theme.into(),
+        [args.width, args.height],
+        &args.out,
+    ) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => fail(EXIT_WRONG_INPUT, &error),
     }

@@ -192,7 +192,7 @@ pub fn help(ctx: &Context, workbench: &Workbench, open: &mut bool) {
                     key_row(ui, &keys, &action.label(workbench));
                 }
             }
-            key_row(ui, "1 2 3 4", words::KEYS_RAIL);
+            key_row(ui, "1 2 3 4 5", words::KEYS_RAIL);
             key_row(ui, "↑ ↓", words::KEYS_LIST);
             key_row(ui, "← →", words::KEYS_STEPS);
             key_row(ui, words::TAB, words::KEYS_TAB);

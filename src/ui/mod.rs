@@ -7,6 +7,7 @@ pub mod actions;
 pub mod arcs;
 pub mod charts;
 pub mod compare;
+pub mod diagnosis;
 pub mod dialogs;
 pub mod figures;
 pub mod file_dialog;
@@ -21,6 +22,7 @@ pub mod start;
 pub mod status;
 pub mod theme;
 pub mod top_bar;
+pub mod verdict;
 pub mod widgets;
 pub mod window;
 
@@ -31,6 +33,8 @@ pub use window::{Start, Window, WindowError, run};
 
 use crate::app::{Command, Workbench};
 use crate::calibrate::Method;
+
+use actions::Action;
 
 /// What the user looks at; shared by all panels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,4 +61,6 @@ pub struct PanelContext<'a> {
     pub selection: &'a mut Selection,
     /// Commands, applied in order after the frame.
     pub commands: &'a mut Vec<Command>,
+    /// What the window itself is to do, e.g. go to another step.
+    pub actions: &'a mut Vec<Action>,
 }

@@ -3,7 +3,9 @@
 use egui::{Align2, CornerRadius, Rect, Role, Sense, TextStyle, Ui, WidgetInfo, vec2};
 
 use crate::app::Workbench;
-use crate::calibrate::verdict;
+use crate::app::verdict_with;
+use crate::calibrate::Verdict;
+use crate::diagnose::Severity;
 use crate::text::methods::verdict_mark;
 use crate::text::shell as words;
 
@@ -26,11 +28,13 @@ pub enum Step {
     Poses,
     /// Methods side by side.
     Compare,
+    /// What is wrong, and what to do next.
+    Diagnosis,
 }
 
 impl Step {
     /// All steps in the order of the rail.
-    pub const ALL: [Self; 4] = [Self::Session, Self::Arcs, Self::Poses, Self::Compare];
+    pub const ALL: [Self; 5] = [Self::Session, Self::Arcs, Self::Poses, Self::Compare, Self::Diagnosis];
 
     /// The step's name.
     #[must_use]
@@ -40,6 +44,7 @@ impl Step {
             Self::Arcs => words::STEP_ARCS,
             Self::Poses => words::STEP_POSES,
             Self::Compare => words::STEP_COMPARE,
+            Self::Diagnosis => words::STEP_DIAGNOSIS,
         }
     }
 
@@ -49,6 +54,7 @@ impl Step {
             Self::Arcs => words::STEP_ARCS_HINT,
             Self::Poses => words::STEP_POSES_HINT,
             Self::Compare => words::STEP_COMPARE_HINT,
+            Self::Diagnosis => words::STEP_DIAGNOSIS_HINT,
         }
     }
 }
@@ -124,17 +130,25 @@ fn mark(workbench: &Workbench, selection: &Selection, step: Step) -> Mark {
         Step::Poses => counted(num_stations_with_findings(&document.session, results, selection.method)),
         Step::Compare => match results.method(selection.method).map(|result| &result.outcome) {
             Some(Ok(solution)) => {
-                let (verdict, _) = verdict::judge(solution);
+                let (verdict, _) = verdict_with(solution, workbench.current_diagnosis());
                 let shape = verdict_mark(verdict).to_owned();
                 match verdict {
-                    crate::calibrate::Verdict::Good => Mark::Fine(shape),
-                    crate::calibrate::Verdict::Usable => Mark::Look(shape),
-                    crate::calibrate::Verdict::NotUsable => Mark::Bad(shape),
+                    Verdict::Good => Mark::Fine(shape),
+                    Verdict::Usable => Mark::Look(shape),
+                    Verdict::NotUsable => Mark::Bad(shape),
                 }
             }
             Some(Err(_)) => Mark::Bad("✖".to_owned()),
             None if results.refusal.is_some() => Mark::Bad("✖".to_owned()),
             None => Mark::None,
         },
+        // Nothing while it is under way: a mark of an earlier diagnosis would be believed.
+        Step::Diagnosis => workbench.current_diagnosis().map_or(Mark::None, |diagnosis| {
+            if diagnosis.findings.iter().any(|finding| finding.severity == Severity::Wrong) {
+                Mark::Bad("✖".to_owned())
+            } else {
+                counted(diagnosis.findings.len())
+            }
+        }),
     }
 }

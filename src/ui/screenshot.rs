@@ -9,7 +9,7 @@ use thiserror::Error;
 
 use crate::app::{Command, NoticeKind};
 
-use super::persisted::Persisted;
+use super::persisted::{Persisted, ThemeChoice};
 use super::rail::Step;
 use super::shell::Shell;
 use super::software_renderer::SoftwareRenderer;
@@ -37,8 +37,14 @@ pub enum ScreenshotError {
 ///
 /// # Errors
 /// [`ScreenshotError`] if the session cannot be read or the picture not be written.
-pub fn screenshot(session: Option<&Path>, step: Step, size: [u32; 2], out: &Path) -> Result<(), ScreenshotError> {
-    let image = render(session, step, size)?;
+pub fn screenshot(
+    session: Option<&Path>,
+    step: Step,
+    theme: ThemeChoice,
+    size: [u32; 2],
+    out: &Path,
+) -> Result<(), ScreenshotError> {
+    let image = render(session, step, theme, size)?;
     image
         .save_with_format(out, image::ImageFormat::Png)
         .map_err(|source| ScreenshotError::Write { path: out.to_owned(), source })
@@ -48,10 +54,15 @@ pub fn screenshot(session: Option<&Path>, step: Step, size: [u32; 2], out: &Path
 ///
 /// # Errors
 /// [`ScreenshotError::Session`] if the session cannot be read.
-pub fn render(session: Option<&Path>, step: Step, size: [u32; 2]) -> Result<RgbaImage, ScreenshotError> {
+pub fn render(
+    session: Option<&Path>,
+    step: Step,
+    theme: ThemeChoice,
+    size: [u32; 2],
+) -> Result<RgbaImage, ScreenshotError> {
     let ctx = Context::default();
     let (sender, woken) = sync_channel(1);
-    let mut shell = Shell::new(&ctx, Persisted::default());
+    let mut shell = Shell::new(&ctx, Persisted { theme, ..Persisted::default() });
     ctx.set_request_repaint_callback(move |_| {
         // A full channel already holds the news that there is news.
         sender.try_send(()).ok();

@@ -2,8 +2,10 @@
 
 use egui::{Align, Layout, ProgressBar, RichText, Ui};
 
-use crate::app::{Command, Notice, NoticeKind, Workbench};
+use crate::app::{Command, Notice, NoticeKind, Progress, Workbench};
+use crate::diagnose::{Finding, Severity};
 use crate::session::Reading;
+use crate::text::diagnosis_panel as panel_words;
 use crate::text::shell as words;
 use crate::text::start::captures as captures_text;
 
@@ -20,7 +22,7 @@ pub fn show(ui: &mut Ui, workbench: &Workbench, step: Step, actions: &mut Vec<Ac
         if let Some((label, action)) = next(workbench, step) {
             ui.label(words::NEXT);
             ui.add_space(4.0);
-            if widgets::primary_button(ui, label).clicked() {
+            if widgets::primary_button(ui, &label).clicked() {
                 actions.push(action);
             }
         }
@@ -30,31 +32,50 @@ pub fn show(ui: &mut Ui, workbench: &Workbench, step: Step, actions: &mut Vec<Ac
     });
 }
 
-fn next(workbench: &Workbench, step: Step) -> Option<(&'static str, Action)> {
+/// Along the rail; findings go first wherever one is, as they change all that follows.
+fn next(workbench: &Workbench, step: Step) -> Option<(String, Action)> {
     let document = workbench.document()?;
-    match step {
-        Step::Session => Some((words::NEXT_ARCS, Action::GoTo(Step::Arcs))),
-        Step::Arcs => Some((words::NEXT_POSES, Action::GoTo(Step::Poses))),
-        Step::Poses => Some((words::NEXT_COMPARE, Action::GoTo(Step::Compare))),
-        Step::Compare => document.is_unsaved().then_some((words::NEXT_SAVE, Action::Save)),
+    let is_serious = |finding: &&Finding| finding.severity != Severity::Note;
+    let findings = workbench.current_diagnosis().map_or(&[][..], |diagnosis| &diagnosis.findings);
+    let num_findings = findings.iter().filter(is_serious).count();
+    if num_findings > 0 && step != Step::Diagnosis {
+        return Some((words::next_findings(num_findings), Action::GoTo(Step::Diagnosis)));
     }
+    let (label, action) = match step {
+        Step::Session => (words::NEXT_ARCS, Action::GoTo(Step::Arcs)),
+        Step::Arcs => (words::NEXT_POSES, Action::GoTo(Step::Poses)),
+        Step::Poses => (words::NEXT_COMPARE, Action::GoTo(Step::Compare)),
+        Step::Compare => (words::NEXT_DIAGNOSIS, Action::GoTo(Step::Diagnosis)),
+        Step::Diagnosis => return document.is_unsaved().then(|| (words::NEXT_SAVE.to_owned(), Action::Save)),
+    };
+    Some((label.to_owned(), action))
+}
+
+/// The job that is told of: the one that the user waits for most.
+fn running(workbench: &Workbench) -> Option<(Progress, String, Command)> {
+    let told = |progress: Option<Progress>, words: fn(usize, usize) -> String, cancel: Command| {
+        progress.map(|progress| (progress, words(progress.done, progress.total), cancel))
+    };
+    told(workbench.solve_progress(), words::solving_progress, Command::CancelSolve)
+        .or_else(|| told(workbench.bootstrap().progress(), panel_words::bootstrap_progress, Command::CancelBootstrap))
+        .or_else(|| told(workbench.diagnosis().progress(), words::diagnosing_progress, Command::CancelDiagnosis))
 }
 
 /// From right to left, as the layout runs.
 fn progress_or_summary(ui: &mut Ui, workbench: &Workbench, commands: &mut Vec<Command>) {
-    if let Some(progress) = workbench.solve_progress() {
+    if let Some((progress, words, cancel)) = running(workbench) {
         if ui.button(words::CANCEL).clicked() {
-            commands.push(Command::CancelSolve);
+            commands.push(cancel);
         }
-        ui.add(ProgressBar::new(fraction(progress.done, progress.total)).desired_width(BAR_WIDTH).desired_height(6.0));
-        ui.label(theme::dim(ui, words::solving_progress(progress.done, progress.total)));
+        ui.add(ProgressBar::new(progress.fraction()).desired_width(BAR_WIDTH).desired_height(6.0));
+        ui.label(theme::dim(ui, words));
     } else if workbench.is_loading() {
         ui.label(theme::dim(ui, words::READING_FILE));
     }
     let Some(document) = workbench.document() else { return };
     let Some(results) = workbench.results() else {
         // The first solve was cancelled.
-        if !workbench.is_busy() && ui.button(words::SOLVE).clicked() {
+        if workbench.solve_progress().is_none() && ui.button(words::SOLVE).clicked() {
             commands.push(Command::Solve);
         }
         return;
@@ -67,18 +88,13 @@ fn progress_or_summary(ui: &mut Ui, workbench: &Workbench, commands: &mut Vec<Co
         let summary = words::summary(stations().count(), &captures, results.elapsed.as_millis());
         ui.label(theme::dim(ui, summary));
     } else {
-        if !workbench.is_busy() && ui.button(words::SOLVE).clicked() {
+        if workbench.solve_progress().is_none() && ui.button(words::SOLVE).clicked() {
             commands.push(Command::Solve);
         }
         let color = theme::palette(ui).warn;
         ui.label(RichText::new(format!("! {}", words::OUT_OF_DATE)).color(color))
             .on_hover_text(words::OUT_OF_DATE_HINT);
     }
-}
-
-#[expect(clippy::cast_precision_loss, reason = "a progress bar is a few hundred points wide")]
-fn fraction(done: usize, total: usize) -> f32 {
-    if total == 0 { 0.0 } else { done as f32 / total as f32 }
 }
 
 /// The notices that stand above the line: on the Session page, errors of opening stand beside the path field instead.

@@ -5,6 +5,7 @@ pub mod check;
 pub mod cli;
 pub mod compare;
 pub mod diagnosis;
+pub mod diagnosis_panel;
 pub mod methods;
 pub mod poses;
 pub mod shell;

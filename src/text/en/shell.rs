@@ -83,6 +83,8 @@ pub const STEP_ARCS: &str = "Arcs";
 pub const STEP_POSES: &str = "Poses";
 /// Rail step.
 pub const STEP_COMPARE: &str = "Compare";
+/// Rail step.
+pub const STEP_DIAGNOSIS: &str = "Diagnosis";
 /// What the rail's step does.
 pub const STEP_SESSION_HINT: &str = "Open a session and see what it holds";
 /// What the rail's step does.
@@ -91,6 +93,8 @@ pub const STEP_ARCS_HINT: &str = "Every profile with its circle, and the radius 
 pub const STEP_POSES_HINT: &str = "The stations' poses, and which of them take part";
 /// What the rail's step does.
 pub const STEP_COMPARE_HINT: &str = "The methods side by side";
+/// What the rail's step does.
+pub const STEP_DIAGNOSIS_HINT: &str = "What is wrong, how sure the result is, and where to measure next";
 
 /// Heading of the page shown where a step has nothing to show.
 pub const EMPTY_TITLE: &str = "No session is open";
@@ -107,6 +111,8 @@ pub const NEXT_ARCS: &str = "Look at the arcs";
 pub const NEXT_POSES: &str = "Check the poses";
 /// Next step.
 pub const NEXT_COMPARE: &str = "Compare the methods";
+/// Next step where nothing was found.
+pub const NEXT_DIAGNOSIS: &str = "See the diagnosis";
 /// Next step.
 pub const NEXT_SAVE: &str = "Save the session…";
 /// Status.
@@ -128,6 +134,18 @@ pub const SOLVE: &str = "Solve";
 #[must_use]
 pub fn solving_progress(done: usize, total: usize) -> String {
     if total == 0 { SOLVING.to_owned() } else { format!("solving {done} / {total}") }
+}
+
+/// Next step where something was found.
+#[must_use]
+pub fn next_findings(number: usize) -> String {
+    format!("See the {}", count(number, "finding"))
+}
+
+/// Progress of the diagnosis.
+#[must_use]
+pub fn diagnosing_progress(done: usize, total: usize) -> String {
+    if total == 0 { "examining".to_owned() } else { format!("examining {done} / {total}") }
 }
 
 /// `1 station`, `2 stations`.
@@ -265,7 +283,7 @@ pub const ABOUT_TEXT: &str =
 /// Shortcut's explanation.
 pub const KEYS_RAIL: &str = "go to a step of the rail";
 /// Shortcut's explanation.
-pub const KEYS_LIST: &str = "previous or next station, in Arcs and Poses";
+pub const KEYS_LIST: &str = "previous or next station, or finding in Diagnosis";
 /// Shortcut's explanation.
 pub const KEYS_STEPS: &str = "previous or next step of the sweep, in Arcs";
 /// The key.
@@ -275,11 +293,11 @@ pub const KEYS_TAB: &str = "next control; with Shift the one before";
 /// The keys.
 pub const SPACE: &str = "Space / Enter";
 /// Shortcut's explanation.
-pub const KEYS_SPACE: &str = "press the control";
+pub const KEYS_SPACE: &str = "press the control; Enter mends the finding selected";
 /// The key.
 pub const ESCAPE: &str = "Esc";
 /// Shortcut's explanation.
-pub const KEYS_ESCAPE: &str = "close a menu or a question";
+pub const KEYS_ESCAPE: &str = "close a menu or a question; stop the bootstrap";
 /// Shortcut's explanation.
 pub const KEYS_SCALE: &str = "make the interface larger or smaller";
 /// Shortcut's explanation.

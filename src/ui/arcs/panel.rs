@@ -115,13 +115,13 @@ impl ArcsState {
 pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut ArcsState) {
     let workbench = context.workbench;
     let Some(document) = workbench.document() else {
-        widgets_empty(ui, text::NO_SESSION);
+        widgets::nothing(ui, text::NO_SESSION);
         return;
     };
     let results = workbench.results();
     let rows = state.rows(document, results);
     if rows.is_empty() {
-        widgets_empty(ui, text::NO_STATIONS);
+        widgets::nothing(ui, text::NO_STATIONS);
         return;
     }
     let selection = &mut *context.selection;
@@ -153,15 +153,6 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut ArcsState) 
         right.set_opacity(0.6);
     }
     plots(&mut right, document, results, &rows, selection, state, hovered_in_list);
-    ui.advance_cursor_after_rect(area);
-}
-
-fn widgets_empty(ui: &mut Ui, sentence: &str) {
-    let area = ui.available_rect_before_wrap();
-    let mut inside = ui.new_child(UiBuilder::new().max_rect(area).layout(Layout::top_down(Align::Center)));
-    inside.add_space((area.height() * 0.4).max(0.0));
-    let words = theme::dim(&inside, sentence);
-    inside.label(words);
     ui.advance_cursor_after_rect(area);
 }
 

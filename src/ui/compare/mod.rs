@@ -1,4 +1,4 @@
-//! Step 5: the methods side by side, their errors, and how their results differ.
+//! Step 4: the methods side by side, their errors, and how their results differ.
 
 mod bars;
 mod cards;
@@ -9,6 +9,5 @@ mod paper;
 mod published;
 mod scatter;
 mod table;
-mod verdict;
 
 pub use panel::{CompareState, show};

@@ -3,13 +3,9 @@
 use nalgebra::Matrix4;
 
 use crate::app::compare::{self, Difference, Improvement, PublishedRow, ScatterEllipse, TruthDistance};
-use crate::calibrate::{
-    Method, MethodResult, Mount, Solution, StationSolution, Verdict, VerdictReason, best_available, solution_of,
-    verdict,
-};
+use crate::calibrate::{Method, MethodResult, Mount, Solution, StationSolution, solution_of};
 use crate::geometry::Vec3;
 use crate::session::Session;
-use crate::text;
 
 /// The methods from left to right: the paper's two first, then the answer to use; the published stop by choice.
 pub const COLUMN_ORDER: [Method; 4] =
@@ -126,32 +122,6 @@ pub struct Column {
     pub outcome: Result<MethodTable, String>,
 }
 
-/// The point that the headline is about.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WorkspacePoint {
-    /// Where it is along the range axis, mm.
-    pub z_mm: f64,
-    /// Whether the session states that distance; otherwise the point is amid the balls seen.
-    pub is_stated: bool,
-    /// Its standard deviation, mm.
-    pub std_mm: f64,
-}
-
-/// The verdict's band.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Band {
-    /// The method that is judged.
-    pub method: Method,
-    /// The verdict.
-    pub verdict: Verdict,
-    /// Its reason in a sentence.
-    pub reason: String,
-    /// How well a point is known.
-    pub workspace_point: Option<WorkspacePoint>,
-    /// Sentence and remedy of each warning.
-    pub warnings: Vec<(String, &'static str)>,
-}
-
 /// A row of the difference table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DifferenceRow {
@@ -187,8 +157,6 @@ impl PublishedTable {
 pub struct CompareModel {
     /// One column a method, in [`COLUMN_ORDER`].
     pub columns: Vec<Column>,
-    /// The verdict; `None` if no method has a result.
-    pub band: Option<Band>,
     /// The paper's comparison.
     pub improvement: Option<Improvement>,
     /// Differences of the methods with results.
@@ -214,7 +182,6 @@ impl CompareModel {
             .collect();
         Self {
             columns,
-            band: best_available(results).map(|solution| band(session, solution)),
             improvement: compare::improvement(results),
             differences: differences(results),
             published: session.published.as_ref().filter(|published| !published.ball_in_base_mm.is_empty()).map(
@@ -251,25 +218,6 @@ fn method_table(session: &Session, solution: &Solution) -> MethodTable {
         truth: session.truth.as_ref().map(|truth| compare::distance_from_truth(solution, truth)),
         matrix: solution.flange_from_sensor.matrix(),
         mount: solution.mount,
-    }
-}
-
-fn band(session: &Session, solution: &Solution) -> Band {
-    let (verdict, reason): (Verdict, VerdictReason) = verdict::judge(solution);
-    Band {
-        method: solution.method,
-        verdict,
-        reason: text::compare::verdict_reason(solution, reason),
-        workspace_point: solution.uncertainty.as_ref().map(|uncertainty| WorkspacePoint {
-            z_mm: uncertainty.reference_point_in_sensor_mm.z,
-            is_stated: session.sensor.reference_distance_mm.is_some(),
-            std_mm: uncertainty.workspace_point_std_mm,
-        }),
-        warnings: solution
-            .warnings
-            .iter()
-            .map(|warning| (text::warnings::warning_message(warning), text::warnings::warning_remedy(warning)))
-            .collect(),
     }
 }
 

@@ -124,14 +124,6 @@ fn the_columns_keep_the_papers_order_and_say_why_one_is_empty() {
 }
 
 #[test]
-fn the_band_judges_the_best_method_and_carries_its_warnings() {
-    let band = CompareModel::new(&session(), &results()).band.expect("a result");
-    assert_eq!((band.method, band.verdict), (Method::BallMaxArc, Verdict::Usable));
-    assert_eq!(band.workspace_point, Some(WorkspacePoint { z_mm: 60.0, is_stated: false, std_mm: 0.06 }));
-    assert_eq!(band.warnings.len(), 1);
-}
-
-#[test]
 fn differences_go_from_each_method_to_the_next() {
     let differences = CompareModel::new(&session(), &results()).differences;
     assert_eq!(differences.len(), 1);
@@ -143,5 +135,5 @@ fn differences_go_from_each_method_to_the_next() {
 #[test]
 fn without_results_there_is_nothing_to_show() {
     let model = CompareModel::new(&session(), &[]);
-    assert!(model.columns.is_empty() && model.band.is_none() && model.differences.is_empty());
+    assert!(model.columns.is_empty() && model.differences.is_empty());
 }

@@ -8,13 +8,14 @@ use crate::app::{Document, Results};
 use crate::calibrate::Method;
 use crate::text::compare as text;
 use crate::text::methods::{method_description, method_short_name};
+use crate::ui::verdict::{self, Band, NextStep};
 use crate::ui::{PanelContext, theme, widgets};
 
 use super::bars::{self, BarSource};
 use super::cards::{self, CardOptions};
 use super::model::{COLUMN_ORDER, Column, CompareModel, ErrorReference, MethodTable};
 use super::scatter::{self, ScatterView};
-use super::{differences, published, table, verdict};
+use super::{differences, published, table};
 
 /// A card narrower than this clips its numbers, points.
 const MIN_CARD_WIDTH: f32 = 440.0;
@@ -82,15 +83,15 @@ fn cards_a_row(width: f32, card_width: f32) -> usize {
 pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut CompareState) {
     let workbench = context.workbench;
     let Some(document) = workbench.document() else {
-        empty(ui, text::NO_SESSION);
+        widgets::nothing(ui, text::NO_SESSION);
         return;
     };
     let Some(results) = workbench.results() else {
-        empty(ui, if workbench.solve_progress().is_some() { text::SOLVING } else { text::CANCELLED });
+        widgets::nothing(ui, if workbench.solve_progress().is_some() { text::SOLVING } else { text::CANCELLED });
         return;
     };
     if let Some(refusal) = &results.refusal {
-        empty(ui, refusal);
+        widgets::nothing(ui, refusal);
         return;
     }
     let model = state.model(document, results);
@@ -104,7 +105,14 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut CompareStat
         ui.set_max_width(area.width());
         let top = ui.cursor().top();
         ui.spacing_mut().item_spacing.y = theme::GAP;
-        verdict::show(ui, &model, is_out_of_date, &mut state.is_explained);
+        // The diagnosis follows the results; until it is there, or once it is out of date, the figures speak alone.
+        let diagnosis = workbench.current_diagnosis();
+        let plan = workbench.current_plan();
+        let band = Band::new(&document.session, &results.methods, diagnosis);
+        let next = NextStep::new(&document.session, diagnosis, plan);
+        let improvement = model.improvement.as_ref();
+        let is_explained = &mut state.is_explained;
+        verdict::show(ui, band.as_ref(), improvement, next.as_ref(), is_out_of_date, is_explained, context);
         let width = ui.available_width();
         let shown = state.shown(&model, width);
         toggles(ui, &model, &shown, state);
@@ -127,15 +135,6 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut CompareStat
             differences::show(ui, &model.differences, shown.contains(&Method::BallMaxArcStep));
         }
     });
-    ui.advance_cursor_after_rect(area);
-}
-
-fn empty(ui: &mut Ui, sentence: &str) {
-    let area = ui.available_rect_before_wrap();
-    let mut inside = ui.new_child(UiBuilder::new().max_rect(area).layout(Layout::top_down(Align::Center)));
-    inside.add_space((area.height() * 0.4).max(0.0));
-    let words = theme::dim(&inside, sentence);
-    inside.label(words);
     ui.advance_cursor_after_rect(area);
 }
 

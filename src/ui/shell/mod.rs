@@ -14,13 +14,16 @@ use crate::text::shell as words;
 use super::actions::{self, Action};
 use super::arcs::ArcsState;
 use super::compare::CompareState;
+use super::diagnosis::DiagnosisState;
 use super::dialogs::SavePath;
 use super::file_dialog::{FileDialog, Purpose};
 use super::persisted::Persisted;
 use super::poses::panel::PosesState;
 use super::rail::{self, Step};
 use super::start::panel::StartState;
-use super::{PanelContext, Selection, arcs, compare, inspector, poses, start, status, theme, top_bar, widgets};
+use super::{
+    PanelContext, Selection, arcs, compare, diagnosis, inspector, poses, start, status, theme, top_bar, widgets,
+};
 
 /// Height of the bar at the top, points.
 const TOP_HEIGHT: f32 = 44.0;
@@ -48,6 +51,7 @@ pub struct Shell {
     poses: PosesState,
     arcs: ArcsState,
     compare: CompareState,
+    diagnosis: DiagnosisState,
     persisted: Persisted,
     file_dialog: FileDialog,
     save_path: Option<SavePath>,
@@ -83,6 +87,7 @@ impl Shell {
             poses: PosesState::default(),
             arcs: ArcsState::default(),
             compare: CompareState::default(),
+            diagnosis: DiagnosisState::default(),
             persisted,
             file_dialog: FileDialog::default(),
             save_path: None,
@@ -186,7 +191,8 @@ impl Shell {
         if self.persisted.inspector_open && self.workbench.document().is_some() {
             let beside = surface.inner_margin(Margin { left: 16, right: 8, top: 0, bottom: 0 });
             Panel::right("inspector").resizable(false).exact_size(INSPECTOR_WIDTH).frame(beside).show(ui, |ui| {
-                let mut context = PanelContext { workbench: &self.workbench, selection: &mut self.selection, commands };
+                let mut context =
+                    PanelContext { workbench: &self.workbench, selection: &mut self.selection, commands, actions };
                 inspector::panel::show(ui, &mut context);
             });
         }
@@ -199,14 +205,16 @@ impl Shell {
                 empty_state(ui, actions);
                 return;
             }
-            let mut context = PanelContext { workbench: &self.workbench, selection: &mut self.selection, commands };
+            let mut context =
+                PanelContext { workbench: &self.workbench, selection: &mut self.selection, commands, actions };
             match self.step {
                 Step::Session => {
-                    start::panel::show(ui, &mut context, &mut self.start, &self.persisted.recent_files, actions);
+                    start::panel::show(ui, &mut context, &mut self.start, &self.persisted.recent_files);
                 }
                 Step::Poses => poses::panel::show(ui, &mut context, &mut self.poses),
                 Step::Arcs => arcs::show(ui, &mut context, &mut self.arcs),
                 Step::Compare => compare::show(ui, &mut context, &mut self.compare),
+                Step::Diagnosis => diagnosis::show(ui, &mut context, &mut self.diagnosis),
             }
         });
     }

@@ -10,6 +10,7 @@ use crate::text::shell as words;
 use crate::ui::Selection;
 use crate::ui::arcs::ArcsState;
 use crate::ui::compare::CompareState;
+use crate::ui::diagnosis::DiagnosisState;
 use crate::ui::poses::panel::PosesState;
 
 use super::Shell;
@@ -33,6 +34,7 @@ impl Shell {
                 self.poses = PosesState::default();
                 self.arcs = ArcsState::default();
                 self.compare = CompareState::default();
+                self.diagnosis = DiagnosisState::default();
                 self.seen_results = 0;
             }
         }

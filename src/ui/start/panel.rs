@@ -65,20 +65,14 @@ impl StartState {
 }
 
 /// Draws the step: the start page, or the overview of the open session beside the ways to open another.
-pub fn show(
-    ui: &mut Ui,
-    context: &mut PanelContext<'_>,
-    state: &mut StartState,
-    recent_files: &[PathBuf],
-    actions: &mut Vec<Action>,
-) {
+pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut StartState, recent_files: &[PathBuf]) {
     // Room for the scroll bar beside the cards, not over them.
     ui.spacing_mut().scroll.floating_allocated_width = 8.0;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         if let Some(document) = context.workbench.document() {
             overview::show(ui, document);
             ui.add_space(theme::GAP);
-            open_card(ui, words::OPEN_ANOTHER, context, state, recent_files, actions);
+            open_card(ui, words::OPEN_ANOTHER, context, state, recent_files);
             ui.add_space(20.0);
             ui.label(theme::strong(words::SAMPLES));
             ui.add_space(4.0);
@@ -90,7 +84,7 @@ pub fn show(
                 ui.add_space(4.0);
                 ui.label(theme::dim(ui, words::LEAD));
                 ui.add_space(16.0);
-                open_card(ui, words::OPEN_FILE, context, state, recent_files, actions);
+                open_card(ui, words::OPEN_FILE, context, state, recent_files);
                 ui.add_space(20.0);
                 ui.label(theme::strong(words::SAMPLES));
                 ui.add_space(8.0);
@@ -106,7 +100,6 @@ fn open_card(
     context: &mut PanelContext<'_>,
     state: &mut StartState,
     recent_files: &[PathBuf],
-    actions: &mut Vec<Action>,
 ) {
     card(
         ui,
@@ -114,7 +107,7 @@ fn open_card(
         |_| {},
         |ui| {
             egui::Frame::new().inner_margin(12).show(ui, |ui| {
-                path_row(ui, context, state, actions);
+                path_row(ui, context, state);
                 if let Some(hint) = state.hint {
                     ui.label(egui::RichText::new(hint).color(theme::palette(ui).warn));
                 }
@@ -126,13 +119,13 @@ fn open_card(
     );
 }
 
-fn path_row(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut StartState, actions: &mut Vec<Action>) {
+fn path_row(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut StartState) {
     ui.horizontal(|ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let is_first = context.workbench.document().is_none();
             let open = if is_first { primary_button(ui, words::CHOOSE_FILE) } else { ui.button(words::CHOOSE_FILE) };
             if open.clicked() {
-                actions.push(Action::Open);
+                context.actions.push(Action::Open);
             }
             let path = state.path.trim();
             let go = ui.add_enabled(!path.is_empty(), egui::Button::new(words::OPEN_PATH));

@@ -1,6 +1,6 @@
 //! Small controls whose visible text is shorter than the name that a screen reader needs.
 
-use egui::{Button, Response, RichText, Role, ScrollArea, Ui, WidgetInfo};
+use egui::{Align, Button, Layout, Response, RichText, Role, ScrollArea, Ui, UiBuilder, WidgetInfo};
 
 use crate::ui::theme;
 
@@ -24,6 +24,17 @@ pub fn symbol_button(ui: &mut Ui, symbol: &str, name: &str) -> Response {
 pub fn primary_button(ui: &mut Ui, text: &str) -> Response {
     let palette = theme::palette(ui);
     ui.add(Button::new(theme::strong(text).color(palette.on_accent)).fill(palette.accent).stroke((0.0, palette.accent)))
+}
+
+/// One sentence in the middle of the space available, where there is nothing else to show.
+pub fn nothing(ui: &mut Ui, sentence: &str) {
+    let area = ui.available_rect_before_wrap();
+    let mut inside =
+        ui.new_child(UiBuilder::new().max_rect(area.shrink(theme::GAP)).layout(Layout::top_down(Align::Center)));
+    inside.add_space((area.height() * 0.4 - theme::GAP).max(0.0));
+    let words = theme::dim(&inside, sentence);
+    inside.label(words);
+    ui.advance_cursor_after_rect(area);
 }
 
 /// Makes a scroll area begin at its top; new with every document, as egui keeps the place of the one before.

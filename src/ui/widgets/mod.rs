@@ -6,5 +6,5 @@ mod number;
 pub mod tables;
 
 pub use card::{card, card_with_height, chip};
-pub use controls::{FromTop, named_checkbox, primary_button, symbol_button};
+pub use controls::{FromTop, named_checkbox, nothing, primary_button, symbol_button};
 pub use number::{fixed, number, number_text, signed, split_row, value_row};

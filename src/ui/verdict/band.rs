@@ -1,32 +1,43 @@
-//! The band above the columns: the verdict in a word, the headline figure, and which method is better by how much.
+//! The band's painting: in one row where there is room, else the comparison below; the next step has a row of its own.
 
 use egui::{Align, Button, Frame, Layout, Margin, RichText, Ui, vec2};
 
+use crate::app::Command;
 use crate::app::compare::Improvement;
 use crate::calibrate::verdict::{GOOD_UP_TO_MM, USABLE_UP_TO_MM};
 use crate::text::compare as text;
+use crate::text::diagnosis_panel as next_words;
 use crate::text::methods::{method_name, method_short_name, verdict_mark, verdict_name};
+use crate::ui::actions::Action;
 use crate::ui::figures::std_text;
-use crate::ui::{theme, widgets};
+use crate::ui::{PanelContext, Step, theme, widgets};
 
-use super::model::{Band, CompareModel};
+use super::model::{Band, NextStep};
 
 /// Shows the band; `is_explained` toggles the reasons.
-pub fn show(ui: &mut Ui, model: &CompareModel, is_out_of_date: bool, is_explained: &mut bool) {
+pub fn show(
+    ui: &mut Ui,
+    band: Option<&Band>,
+    improvement: Option<&Improvement>,
+    next: Option<&NextStep>,
+    is_out_of_date: bool,
+    is_explained: &mut bool,
+    context: &mut PanelContext<'_>,
+) {
     widgets::card(
         ui,
         "",
         |_| {},
         |ui| {
             Frame::new().inner_margin(Margin::symmetric(16, 10)).show(ui, |ui| {
-                let Some(band) = &model.band else {
+                let Some(band) = band else {
                     ui.horizontal(|ui| {
                         ui.set_min_size(vec2(ui.available_width(), 28.0));
                         ui.label(theme::dim(ui, text::NO_METHOD));
                     });
                     return;
                 };
-                let words = Words::new(band, model.improvement.as_ref());
+                let words = Words::new(band, improvement);
                 let rows = words.rows(ui, is_out_of_date);
                 ui.horizontal(|ui| {
                     ui.set_min_height(30.0);
@@ -55,9 +66,41 @@ pub fn show(ui: &mut Ui, model: &CompareModel, is_out_of_date: bool, is_explaine
                 if *is_explained {
                     reasons(ui, band);
                 }
+                if let Some(next) = next {
+                    next_step(ui, next, context);
+                }
             });
         },
     );
+}
+
+/// What to do next: a sentence, the remedy's button where there is one, and the way to the diagnosis.
+fn next_step(ui: &mut Ui, next: &NextStep, context: &mut PanelContext<'_>) {
+    ui.add_space(4.0);
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().interact_size.y = 26.0;
+        ui.label(theme::dim(ui, next_words::NEXT_STEP));
+        let see = match next {
+            NextStep::Mend { title, remedy, label } => {
+                ui.label(theme::strong(*title));
+                if widgets::primary_button(ui, label).clicked() {
+                    context.commands.push(Command::ApplyRemedy(remedy.clone()));
+                }
+                next_words::SEE_DIAGNOSIS
+            }
+            NextStep::Look { title } => {
+                ui.label(theme::strong(*title));
+                next_words::SEE_DIAGNOSIS
+            }
+            NextStep::Measure { gain } => {
+                ui.label(gain);
+                next_words::SEE_NEXT_POSES
+            }
+        };
+        if ui.button(see).clicked() {
+            context.actions.push(Action::GoTo(Step::Diagnosis));
+        }
+    });
 }
 
 /// What the band says, part by part.
