@@ -1,4 +1,4 @@
-//! The arcs and the comparison panel alone, driven by the names that screen readers see.
+//! The arcs, the comparison and the diagnosis panel alone, driven by the names that screen readers see.
 #![expect(clippy::expect_used, reason = "helpers of tests may fail as tests do")]
 
 use std::sync::Arc;
@@ -7,19 +7,30 @@ use std::sync::mpsc::{Receiver, sync_channel};
 use egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use handeye::app::{Command, Workbench};
+use handeye::app::{Command, Progress, Workbench};
+use handeye::calibrate::validation::{Bootstrap, Influence, Normality, SplitHalf, Validation};
 use handeye::calibrate::{self, Method};
-use handeye::geometry::Profile;
+use handeye::diagnose::{
+    CurveAxis, Diagnosis, Evidence, Fault, Finding, Plot, PoseReading, ReadingFit, Remedy, Severity, StationBar,
+};
+use handeye::geometry::{Profile, Transform, Vec3};
+use handeye::plan::{Plan, PlanRefusal, PlannedStation};
 use handeye::session::{self, Reading, Session, samples};
-use handeye::text::{arcs as arcs_words, compare as compare_words, method_name, method_short_name};
+use handeye::text::{
+    arcs as arcs_words, compare as compare_words, diagnosis as fault_words, diagnosis_panel as panel_words,
+    method_name, method_short_name,
+};
+use handeye::ui::actions::Action;
 use handeye::ui::arcs::ArcsState;
 use handeye::ui::compare::CompareState;
+use handeye::ui::diagnosis::{DiagnosisState, Seen, View};
 use handeye::ui::{self, PanelContext, Selection};
 
 #[derive(Clone, Copy)]
 enum Shown {
     Arcs,
     Compare,
+    Diagnosis,
 }
 
 struct Bench {
@@ -28,8 +39,21 @@ struct Bench {
     shown: Shown,
     selection: Selection,
     commands: Vec<Command>,
+    actions: Vec<Action>,
     arcs: ArcsState,
     compare: CompareState,
+    diagnosis: DiagnosisState,
+    /// Stands in the diagnosis panel for what was really found.
+    made_up: Option<MadeUp>,
+}
+
+/// A diagnosis made by hand, as the panel would see it.
+struct MadeUp {
+    diagnosis: Diagnosis,
+    is_current: bool,
+    bootstrap: Option<Bootstrap>,
+    bootstrap_progress: Option<Progress>,
+    plan: Result<Plan, PlanRefusal>,
 }
 
 impl Bench {
@@ -44,8 +68,11 @@ impl Bench {
             shown,
             selection: Selection::default(),
             commands: Vec::new(),
+            actions: Vec::new(),
             arcs: ArcsState::default(),
             compare: CompareState::default(),
+            diagnosis: DiagnosisState::default(),
+            made_up: None,
         }
     }
 
@@ -68,10 +95,23 @@ impl Bench {
             workbench: &bench.workbench,
             selection: &mut bench.selection,
             commands: &mut bench.commands,
+            actions: &mut bench.actions,
         };
         match bench.shown {
             Shown::Arcs => ui::arcs::show(ui, &mut context, &mut bench.arcs),
             Shown::Compare => ui::compare::show(ui, &mut context, &mut bench.compare),
+            Shown::Diagnosis => match (&bench.made_up, View::of(&bench.workbench)) {
+                (Some(made_up), Some(mut view)) => {
+                    let revision = Some(u64::from(made_up.is_current));
+                    let is_current = made_up.is_current;
+                    view.diagnosis = Seen { value: Some(&made_up.diagnosis), revision, is_current, progress: None };
+                    view.plan = Seen { value: Some(&made_up.plan), revision, is_current, progress: None };
+                    let (value, progress) = (made_up.bootstrap.as_ref(), made_up.bootstrap_progress);
+                    view.bootstrap = Seen { value, revision, is_current, progress };
+                    ui::diagnosis::show_view(ui, &view, &mut context, &mut bench.diagnosis);
+                }
+                _ => ui::diagnosis::show(ui, &mut context, &mut bench.diagnosis),
+            },
         }
     }
 
@@ -317,4 +357,192 @@ fn the_whole_profile_looks_as_it_did() {
 #[test]
 fn the_narrow_comparison_looks_as_it_did() {
     pictured(Shown::Compare, "lin-mu-2019-table-1.json", [532.0, 420.0]).snapshot("compare_narrow");
+}
+
+fn finding(fault: Fault, severity: Severity, plot: Option<Plot>, remedy: Option<Remedy>) -> Finding {
+    let residual_mm = plot.as_ref().map(|_| [1.29, 0.018]);
+    Finding { fault, severity, explains: 72.0, evidence: Evidence { residual_mm, plot }, remedy }
+}
+
+/// A finding for every kind of plot, the most serious first.
+fn one_finding_a_plot() -> Vec<Finding> {
+    let stations = (0..8_u8).map(|idx| StationBar {
+        station_idx: usize::from(idx),
+        label: (idx + 1).to_string(),
+        error_mm: if idx == 3 { 1.29 } else { 0.02 + 0.004 * f64::from(idx) },
+        is_accused: idx == 3,
+    });
+    let reading = |rms_mm: f64, num_ties: usize, is_as_given: bool| ReadingFit {
+        reading: PoseReading::default(),
+        ties: vec![PoseReading::default(); num_ties],
+        rms_mm,
+        is_as_given,
+    };
+    let radius = |idx: i16| {
+        let radius_mm = 15.0 + 0.05 * f64::from(idx);
+        [radius_mm, (0.018_f64).hypot((radius_mm - 15.3) * 1.4)]
+    };
+    let shift = |idx: i16| [f64::from(idx), 0.05 * f64::from(idx) + 0.02 * f64::from(idx * 7 % 5) - 0.2];
+    let step = |idx: i16| [0.5 * f64::from(idx), 0.5 * 1.05 * f64::from(idx)];
+    vec![
+        finding(
+            Fault::WrongPose { station_idx: 3, off_mm: 1.29, typical_mm: 0.018 },
+            Severity::Wrong,
+            Some(Plot::Stations(stations.collect())),
+            Some(Remedy::LeaveOut(vec![3])),
+        ),
+        finding(
+            Fault::PosesMisread { reading: PoseReading::default() },
+            Severity::Wrong,
+            Some(Plot::Readings(vec![
+                reading(0.018, 2, false),
+                reading(0.91, 0, false),
+                reading(1.29, 1, true),
+                reading(14.0, 0, false),
+                reading(44.0, 3, false),
+            ])),
+            Some(Remedy::ReadPosesAs(PoseReading::default())),
+        ),
+        finding(
+            Fault::OneAxis { axis_in_flange: Vec3::new(0.05, -0.1, 0.99).normalize(), ratio: Some(24.0) },
+            Severity::Wrong,
+            Some(Plot::Direction {
+                in_flange: Vec3::new(0.05, -0.1, 0.99).normalize(),
+                rotations_deg: [0.4, 0.9, 21.0],
+            }),
+            None,
+        ),
+        finding(
+            Fault::WrongRadius { found_mm: 15.304_2, std_mm: 0.003_1, given_mm: 15.0 },
+            Severity::Doubtful,
+            Some(Plot::Curve {
+                axis: CurveAxis::RadiusMm,
+                points: (-2..14).map(radius).collect(),
+                given: 15.0,
+                found: 15.304_2,
+                std: 0.003_1,
+            }),
+            Some(Remedy::SetRadius(15.304_2)),
+        ),
+        finding(
+            Fault::Drift { total_in_base_mm: Vec3::new(0.0, 0.0, 0.4), std_mm: 0.05 },
+            Severity::Doubtful,
+            Some(Plot::Trend { points: (1..=8).map(shift).collect(), line: [-0.17, 0.21] }),
+            None,
+        ),
+        finding(
+            Fault::StepDiffersFromPose { station_idx: 2, ratio: 1.05, difference_mm: 0.4 },
+            Severity::Note,
+            Some(Plot::Steps((0..21).map(step).collect())),
+            None,
+        ),
+        finding(Fault::ResidualsNotNormal { p_value: 0.004 }, Severity::Note, None, None),
+    ]
+}
+
+fn made_up(findings: Vec<Finding>) -> MadeUp {
+    let influence = |idx: u8| Influence {
+        station_idx: usize::from(idx),
+        label: (idx + 1).to_string(),
+        studentised_residual: 0.5 + 0.4 * f64::from(idx * 5 % 7),
+        p_value: 0.3,
+        moves_workspace_point_mm: 0.002 * f64::from(idx * 3 % 8),
+    };
+    let quantile = |idx: i8| {
+        let quantile = 2.4 * f64::from(idx) / 60.0;
+        [quantile, quantile + 0.02 * quantile.powi(3)]
+    };
+    let validation = Validation {
+        influence: (0..8).map(influence).collect(),
+        split_half: Some(SplitHalf {
+            disagreements_mm: (1..=70).map(|idx| 0.001 * f64::from(idx).powf(0.8)).collect(),
+            median_mm: 0.017,
+            max_mm: 0.03,
+            expected_mm: 0.019,
+        }),
+        normality: Some(Normality { p_value: 0.42, quantiles: (-60..=60).map(quantile).collect() }),
+    };
+    let planned = |idx: u8| PlannedStation {
+        base_from_flange: Transform::from_parts(
+            Vec3::new(1012.3 + f64::from(idx), -204.5, 456.7),
+            nalgebra::UnitQuaternion::from_euler_angles(3.1, 0.1 * f64::from(idx), -1.2),
+        ),
+        tilt_deg: 28.0,
+        azimuth_deg: 40.0 * f64::from(idx),
+        spin_deg: -90.0,
+        workspace_point_std_mm: Some(0.014 - 0.001 * f64::from(idx)),
+    };
+    MadeUp {
+        diagnosis: Diagnosis { findings, readings: Vec::new(), validation: Some(validation) },
+        is_current: true,
+        bootstrap: None,
+        bootstrap_progress: None,
+        plan: Ok(Plan { workspace_point_std_mm: Some(0.015), stations: (1..=4).map(planned).collect() }),
+    }
+}
+
+fn diagnosing(made_up: MadeUp) -> Bench {
+    Bench { made_up: Some(made_up), ..Bench::with(Shown::Diagnosis, sample("clean-sweeps.json")) }
+}
+
+fn finding_name(idx: usize) -> String {
+    panel_words::finding_name(idx + 1, fault_words::fault_title(&one_finding_a_plot()[idx].fault))
+}
+
+#[test]
+fn a_finding_is_mended_by_its_button_and_by_enter() {
+    let remedy = Command::ApplyRemedy(Remedy::LeaveOut(vec![3]));
+    let mut harness = diagnosing(made_up(one_finding_a_plot())).harness();
+    let session = sample("clean-sweeps.json");
+    harness.get_by_label(&fault_words::remedy_label(&Remedy::LeaveOut(vec![3]), &session)).click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().commands, [remedy.clone()]);
+    let mut harness = diagnosing(made_up(one_finding_a_plot())).harness();
+    press(&mut harness, Key::Enter);
+    assert_eq!(harness.state().commands, [remedy]);
+}
+
+#[test]
+fn arrow_keys_go_through_the_findings_and_each_shows_its_evidence() {
+    let findings = one_finding_a_plot();
+    for size in [[520.0, 640.0], [948.0, 792.0]] {
+        let mut harness = diagnosing(made_up(one_finding_a_plot())).harness_of_size(size);
+        for (idx, finding) in findings.iter().enumerate() {
+            harness.get_by_label(&finding_name(idx));
+            match &finding.evidence.plot {
+                Some(plot) => harness.get_by_label(fault_words::plot_title(plot)),
+                None => harness.get_by_label(panel_words::NO_PLOT),
+            };
+            press(&mut harness, Key::ArrowDown);
+        }
+        harness.get_by_label(panel_words::NO_PLOT);
+        assert!(harness.state().commands.is_empty());
+    }
+}
+
+// LOOK
+#[test]
+fn look() {
+    for (name, theme, size) in [
+        ("wide", egui::Theme::Light, [948.0, 792.0]),
+        ("narrow", egui::Theme::Light, [532.0, 660.0]),
+        ("tall", egui::Theme::Light, [532.0, 1700.0]),
+        ("dark", egui::Theme::Dark, [948.0, 792.0]),
+    ] {
+        let mut harness = Harness::builder()
+            .with_size(size)
+            .renderer(Software::default())
+            .with_theme(theme)
+            .with_context_setup(ui::theme::install)
+            .build_ui_state(Bench::ui, diagnosing(made_up(one_finding_a_plot())));
+        harness.run_steps(6);
+        for idx in 0..7 {
+            harness.render().expect("drawn").save(format!("/tmp/look/{name}{idx}.png")).expect("saved");
+            if name == "narrow" || name == "tall" || name == "dark" {
+                break;
+            }
+            press(&mut harness, Key::ArrowDown);
+            harness.run_steps(3);
+        }
+    }
 }

@@ -11,7 +11,9 @@ use handeye::app::{Command, NoticeKind, Workbench};
 use handeye::session::{self, samples};
 use handeye::text::start::{open_sample, sample_lesson};
 use handeye::text::{poses as pose_words, shell as shell_words, start as start_words};
+use handeye::ui::actions::Action;
 use handeye::ui::dialogs::{SavePath, SavePathAnswer};
+use handeye::ui::persisted::ThemeChoice;
 use handeye::ui::poses::panel::{self as poses_panel, PosesState};
 use handeye::ui::{self, PanelContext, Selection, Start, Step, Window};
 
@@ -108,6 +110,7 @@ fn unticking_a_station_sends_exactly_that_command() {
         workbench: Workbench,
         selection: Selection,
         commands: Vec<Command>,
+        actions: Vec<Action>,
         state: PosesState,
     }
     let mut workbench = Workbench::new(Arc::new(|| {}));
@@ -115,14 +118,20 @@ fn unticking_a_station_sends_exactly_that_command() {
     let session = session::parse(sample.json.as_bytes(), sample.file_name).expect("the sample is a session");
     let name = pose_words::use_station(&session.stations[1].label);
     workbench.open_session(session, None);
-    let bench =
-        Bench { workbench, selection: Selection::default(), commands: Vec::new(), state: PosesState::default() };
+    let bench = Bench {
+        workbench,
+        selection: Selection::default(),
+        commands: Vec::new(),
+        actions: Vec::new(),
+        state: PosesState::default(),
+    };
     let mut harness = Harness::builder().with_size(SIZE).with_context_setup(ui::theme::install).build_ui_state(
         |ui, bench: &mut Bench| {
             let mut context = PanelContext {
                 workbench: &bench.workbench,
                 selection: &mut bench.selection,
                 commands: &mut bench.commands,
+                actions: &mut bench.actions,
             };
             poses_panel::show(ui, &mut context, &mut bench.state);
         },
@@ -154,8 +163,9 @@ fn an_edit_is_undone_and_redone_with_keys_and_buttons() {
 #[test]
 fn digits_and_arrows_move_through_the_window() {
     let mut harness = window_with("few-rotations.json");
-    for (key, step) in [Key::Num4, Key::Num2, Key::Num1, Key::Num3].into_iter().zip([
+    for (key, step) in [Key::Num4, Key::Num5, Key::Num2, Key::Num1, Key::Num3].into_iter().zip([
         Step::Compare,
+        Step::Diagnosis,
         Step::Arcs,
         Step::Session,
         Step::Poses,
@@ -271,7 +281,7 @@ fn pictures_of_all_steps_are_drawn_without_a_display() {
     let path = folder.path().join("session.json");
     std::fs::write(&path, samples::ALL[3].json).expect("written");
     for step in Step::ALL {
-        let picture = ui::screenshot::render(Some(&path), step, [1024, 768]).expect("drawn");
+        let picture = ui::screenshot::render(Some(&path), step, ThemeChoice::Light, [1024, 768]).expect("drawn");
         let pixels: Vec<_> = picture.pixels().map(|pixel| pixel.0).collect();
         assert!(pixels.iter().all(|[.., alpha]| *alpha == 255), "the window covers the picture");
         let distinct: std::collections::HashSet<_> = pixels.iter().collect();

@@ -229,8 +229,12 @@ pub fn point_at(z_mm: &str) -> String {
     format!("point at z = {z_mm} mm")
 }
 
-/// Row.
-pub const WITHIN_95: &str = "with 95 % within";
+/// The ball that holds it with 95 %.
+#[must_use]
+pub fn within_95(within_mm: &str) -> String {
+    format!("95 % within {within_mm} mm")
+}
+
 /// Row: the direction in which it is known worst.
 #[must_use]
 pub fn weakest(along: &str) -> String {

@@ -23,8 +23,8 @@ const NUM_DRAWS: usize = 500;
 const RADIUS_STEP_MM: f64 = 0.1;
 /// Up to this ratio, either way, the bootstrap agrees with the stated σ: it is itself no better with few stations.
 const AGREES_WITHIN: f64 = 1.5;
-/// Height of a row of figures, points.
-const FIGURE_ROWS: f32 = 5.0;
+/// Rows of figures below the ellipses.
+const FIGURE_ROWS: f32 = 4.0;
 
 /// Shows the card.
 pub fn show(ui: &mut Ui, height: f32, view: &View<'_>, commands: &mut Vec<Command>) {
@@ -65,11 +65,12 @@ fn contents(ui: &mut Ui, view: &View<'_>, solution: &Solution, uncertainty: &Unc
 
 fn figures(ui: &mut Ui, view: &View<'_>, solution: &Solution, uncertainty: &Uncertainty) {
     let std_mm = uncertainty.workspace_point_std_mm;
+    let within_mm = uncertainty.workspace_point_95_mm;
     split_row(ui, &words::point_at(&fixed(uncertainty.reference_point_in_sensor_mm.z, 0)), |ui| {
+        let within = words::within_95(&std_text(within_mm));
+        ui.label(theme::dim(ui, within)).on_hover_text(all_digits(within_mm));
         ui.label(theme::strong(format!("± {} mm", std_text(std_mm)))).on_hover_text(all_digits(std_mm));
     });
-    let within_mm = uncertainty.workspace_point_95_mm;
-    value_row(ui, words::WITHIN_95, format!("{} mm", std_text(within_mm))).on_hover_text(all_digits(within_mm));
     let (weakest, weakest_mm) = uncertainty.weakest_direction();
     let weakest = fault_words::along(weakest, solution.mount);
     value_row(ui, &words::weakest(&weakest), format!("± {} mm", std_text(weakest_mm)));
@@ -133,10 +134,10 @@ fn view_along(ui: &Ui, place: Rect, variances: &[f64; 3], scale: f64, [right, up
     painter.hline(place.x_range(), centre.y, Stroke::new(1.0, palette.hairline));
     painter.vline(centre.x, place.y_range(), Stroke::new(1.0, palette.hairline));
     let font = FontId::proportional(theme::SMALL_SIZE);
-    let at = pos2(place.right() - 5.0, centre.y - 1.0);
-    painter.text(at, Align2::RIGHT_BOTTOM, names[0], font.clone(), palette.text_dim);
-    let at = pos2(centre.x + 4.0, place.top() + 2.0);
-    painter.text(at, Align2::LEFT_TOP, names[1], font.clone(), palette.text_dim);
+    let at = place.right_bottom() - vec2(6.0, 2.0);
+    painter.text(at, Align2::RIGHT_BOTTOM, format!("{} →", names[0]), font.clone(), palette.text_dim);
+    let at = place.left_top() + vec2(8.0, 3.0);
+    painter.text(at, Align2::LEFT_TOP, format!("{} ↑", names[1]), font.clone(), palette.text_dim);
 
     let [xx, yy, xy] = *variances;
     // Eigenvalues of the symmetric 2 × 2 matrix, in closed form.

@@ -11,6 +11,9 @@ const BAR_WIDTH: f64 = 0.62;
 /// Distance between the lines of a hatched bar, points.
 const HATCH_SPACING: f32 = 5.0;
 
+/// Room above the plot, so that the uppermost label is not cut, points.
+pub const TOP_ROOM: f32 = 6.0;
+
 /// A bar.
 pub struct Bar<'a> {
     /// Index of the station in the session.
@@ -46,6 +49,7 @@ pub fn show(ui: &mut Ui, frame: &Frame<'_>, bars: &[Bar<'_>], selection: &mut Se
     if extent.y[1] <= extent.y[0] {
         extent.y[1] = 0.01;
     }
+    ui.add_space(TOP_ROOM);
     let height = ui.available_height();
     let mut chart = Chart::new(frame.id, words::STATION_AXIS, frame.y_title, height, extent);
     chart.x_names = Some(&names);

@@ -143,14 +143,14 @@ fn stacked(ui: &mut Ui, view: &View<'_>, context: &mut PanelContext<'_>, state: 
     validation::normality(&mut right, distributions, view, &mut state.is_fitted[3]);
 }
 
-/// Places beside each other, as wide as their parts say.
+/// Places beside each other, as wide as their parts say. Each part is that of a place with its gap, so that the edges of
+/// rows with different numbers of places line up.
 fn row<const N: usize>(ui: &mut Ui, height: f32, parts: [f32; N]) -> [Ui; N] {
     let (area, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
-    #[expect(clippy::cast_precision_loss, reason = "at most three places")]
-    let free = area.width() - theme::GAP * (N - 1) as f32;
+    let whole = area.width() + theme::GAP;
     let mut left = area.left();
     parts.map(|part| {
-        let place = area.with_min_x(left).with_max_x((left + free * part).round());
+        let place = area.with_min_x(left).with_max_x((left + whole * part - theme::GAP).round());
         left = place.right() + theme::GAP;
         ui.new_child(UiBuilder::new().max_rect(place))
     })

@@ -13,9 +13,11 @@ use crate::ui::{theme, widgets};
 use super::model::{self, View};
 
 /// Least widths of the columns: position, angles, tilt, azimuth, spin, σ; they share what is left.
-const WIDTHS: [f32; 10] = [52.0, 52.0, 52.0, 50.0, 50.0, 50.0, 42.0, 52.0, 44.0, 50.0];
+const WIDTHS: [f32; 10] = [51.0, 51.0, 51.0, 49.0, 49.0, 49.0, 40.0, 50.0, 44.0, 48.0];
 /// Width of the column of numbers.
 const NUMBER_WIDTH: f32 = 22.0;
+/// Free room at the right end, points.
+const END_MARGIN: f32 = 6.0;
 /// Decimals of a planned pose: the robot need not be there more exactly.
 const DECIMALS: usize = 1;
 /// Most tilt that makes sense: beyond, the laser grazes the ball.
@@ -61,12 +63,14 @@ fn poses(ui: &mut Ui, view: &View<'_>, plan: &Plan) {
     for width in WIDTHS {
         builder = builder.column(widgets::tables::number_column(width));
     }
+    builder = builder.column(Column::exact(END_MARGIN));
     builder
         .header(theme::ROW_HEIGHT, |mut row| {
             head(&mut row, "");
             for name in model::plan_heads(convention) {
                 number_head(&mut row, &name);
             }
+            head(&mut row, "");
         })
         .body(|body| {
             body.rows(theme::ROW_HEIGHT, plan.stations.len(), |mut row| {
@@ -80,6 +84,7 @@ fn poses(ui: &mut Ui, view: &View<'_>, plan: &Plan) {
                 for cell in model::plan_row(station, convention, DECIMALS) {
                     number_cell(&mut row, cell);
                 }
+                row.col(|_| {});
             });
         });
 }

@@ -157,6 +157,7 @@ fn quantiles(ui: &mut Ui, quantiles: &[[f64; 2]], is_fitted: &mut bool) {
         extent.include(*expected, *found);
         extent.include(*expected, *expected);
     }
+    ui.add_space(bars::TOP_ROOM);
     let height = ui.available_height();
     let id = Id::unique("diagnosis normality");
     let canvas = Chart::new(id, words::QUANTILE_AXIS, words::RESIDUAL_AXIS, height, extent).show(ui, is_fitted);
