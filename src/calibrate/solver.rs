@@ -163,7 +163,7 @@ impl Normal {
 }
 
 /// The diagonal matrix that scales the diagonal of `scaling * hessian * scaling` to one, so that mm and rad compare.
-fn unit_diagonal_scaling(hessian: &Hessian) -> Hessian {
+pub(crate) fn unit_diagonal_scaling(hessian: &Hessian) -> Hessian {
     Hessian::from_diagonal(&hessian.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 0.0 }))
 }
 

@@ -34,10 +34,16 @@ pub fn uncertainty(
     }
 }
 
-/// Covariance of a point given in the sensor frame, along the sensor's axes: dp = v − p × ω.
-fn point_covariance(right_covariance: &Matrix6<f64>, point_in_sensor: Vec3) -> Mat3 {
+/// Covariance of a point given in the sensor frame, along the sensor's axes.
+pub(crate) fn point_covariance(right_covariance: &Matrix6<f64>, point_in_sensor: Vec3) -> Mat3 {
+    let jacobian = point_jacobian(point_in_sensor);
+    jacobian * right_covariance * jacobian.transpose()
+}
+
+/// How a point given in the sensor frame follows (rotation, translation): dp = v − p × ω.
+pub(crate) fn point_jacobian(point_in_sensor: Vec3) -> SMatrix<f64, 3, 6> {
     let mut jacobian = SMatrix::<f64, 3, 6>::zeros();
     jacobian.fixed_view_mut::<3, 3>(0, 0).copy_from(&-hat(point_in_sensor));
     jacobian.fixed_view_mut::<3, 3>(0, 3).copy_from(&Mat3::identity());
-    jacobian * right_covariance * jacobian.transpose()
+    jacobian
 }
