@@ -3,8 +3,8 @@
 use nalgebra::{Matrix6, SMatrix};
 
 use crate::calibrate::observation::NUM_UNKNOWNS;
-use crate::calibrate::solver::{Hessian, covariance_for_unit_noise, sensor_block, unit_diagonal_scaling};
-use crate::calibrate::uncertainty::{point_covariance, point_jacobian};
+use crate::calibrate::solver::{Hessian, Normal, covariance_for_unit_noise, unit_diagonal_scaling};
+use crate::calibrate::uncertainty::point_by_sensor;
 use crate::geometry::so3::hat;
 use crate::geometry::{Mat3, Vec3};
 
@@ -12,16 +12,15 @@ use crate::geometry::{Mat3, Vec3};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Information {
     hessian: Hessian,
-    point_in_sensor: Vec3,
-    /// Of the point by the unknowns, transposed.
+    /// Derivative of the unknowns' part in the point, transposed.
     by_unknowns: SMatrix<f64, NUM_UNKNOWNS, 3>,
 }
 
 impl Information {
     pub fn new(hessian: Hessian, point_in_sensor: Vec3) -> Self {
         let mut by_unknowns = SMatrix::<f64, NUM_UNKNOWNS, 3>::zeros();
-        by_unknowns.fixed_view_mut::<6, 3>(0, 0).copy_from(&point_jacobian(point_in_sensor).transpose());
-        Self { hessian, point_in_sensor, by_unknowns }
+        by_unknowns.fixed_view_mut::<6, 3>(0, 0).copy_from(&point_by_sensor(point_in_sensor).transpose());
+        Self { hessian, by_unknowns }
     }
 
     /// With a station more.
@@ -37,7 +36,7 @@ impl Information {
     /// σ of the point in three dimensions for unit noise; `None` if the information leaves a direction free.
     pub fn point_std(&self) -> Option<f64> {
         let covariance = covariance_for_unit_noise(&self.hessian).ok()?;
-        let variance = point_covariance(&sensor_block(&covariance), self.point_in_sensor).trace();
+        let variance = (self.by_unknowns.transpose() * covariance * self.by_unknowns).trace();
         (variance.is_finite() && variance > 0.0).then(|| variance.sqrt())
     }
 
@@ -52,25 +51,21 @@ impl Information {
     }
 }
 
-/// What a station says in its own sensor frame: the information about (rotation, translation) for a ball that stands still
-/// there, Σ `[s]× −I`ᵀ W `[s]× −I` over its captures.
-pub(super) fn station_information(captures: impl Iterator<Item = (Vec3, Mat3)>) -> Matrix6<f64> {
-    let mut sum = Matrix6::zeros();
-    for (ball_in_sensor, information) in captures {
-        let jacobian = -point_jacobian(ball_in_sensor);
-        sum += jacobian.transpose() * information * jacobian;
-    }
-    sum
+/// What a station's sums say about (rotation, translation).
+pub(super) fn about_sensor(sums: &Normal) -> Matrix6<f64> {
+    sums.hessian.fixed_view::<6, 6>(0, 0).into_owned()
 }
 
-/// The same about all unknowns, with the ball `shift` further off in the sensor frame, at an orientation.
+/// What a station says about all unknowns, from what it says about (rotation, translation), at an orientation and with the
+/// ball `shift` further off in the sensor frame.
 ///
-/// From ds = s × ω − v + C db; a shifted ball is a shifted lever of the rotation.
-pub(super) fn information_at(station: &Matrix6<f64>, shift: Vec3, sensor_from_base: &Mat3) -> Hessian {
+/// From ds = s × ω − v + C db: a shifted ball is a shifted lever of the rotation, and the ball moves as the sensor does,
+/// turned.
+pub(super) fn information_at(about_sensor: &Matrix6<f64>, shift: Vec3, sensor_from_base: &Mat3) -> Hessian {
     let mut by_unknowns = SMatrix::<f64, 6, NUM_UNKNOWNS>::identity();
     by_unknowns.fixed_view_mut::<3, 3>(3, 0).copy_from(&-hat(shift));
     by_unknowns.fixed_view_mut::<3, 3>(3, 6).copy_from(&-sensor_from_base);
-    by_unknowns.transpose() * station * by_unknowns
+    by_unknowns.transpose() * about_sensor * by_unknowns
 }
 
 #[cfg(test)]
@@ -79,7 +74,6 @@ mod tests {
 
     use super::*;
     use crate::calibrate::observation::{CentreObservation, State};
-    use crate::calibrate::solver::Normal;
     use crate::geometry::Rigid;
 
     #[test]
@@ -104,10 +98,16 @@ mod tests {
                 CentreObservation { information, ..CentreObservation::point(0, pose, place + shift) }
             })
             .collect();
-        let summed = Normal::of(observations.iter(), &state).hessian;
-        let station = station_information(places.into_iter().zip(weights));
+        let common = Mat3::identity() * 0.1;
+        let summed = Normal::of(observations.iter(), &state).with_common_shift(&common).hessian;
+        let still = observations.iter().zip(places).map(|(observation, place)| CentreObservation {
+            base_from_flange: Rigid::translation(-place.x, -place.y, -place.z),
+            ..observation.clone()
+        });
+        let at_origin = State { flange_from_sensor: Rigid::identity(), ball_in_base: Vec3::zeros() };
+        let sums = Normal::of(still.collect::<Vec<_>>().iter(), &at_origin).with_common_shift(&common);
         let sensor_from_base = base_from_sensor.inverse().to_rotation_matrix().into_inner();
-        let planned = information_at(&station, shift, &sensor_from_base);
+        let planned = information_at(&about_sensor(&sums), shift, &sensor_from_base);
         assert!((summed - planned).norm() < 1e-9 * summed.norm(), "{summed} {planned}");
     }
 }

@@ -2,10 +2,12 @@
 
 use nalgebra::UnitQuaternion;
 
-use crate::calibrate::observation::State;
-use crate::calibrate::solver::{Gradient, Hessian};
-use crate::geometry::{Mat3, Vec3, so3};
+use crate::calibrate::Mount;
+use crate::calibrate::observation::{CentreObservation, State};
+use crate::calibrate::solver::{Gradient, Hessian, Normal};
+use crate::geometry::{Mat3, Rigid, Vec3, so3};
 
+use super::information::about_sensor;
 use super::search::Cell;
 use super::typical::{StationModel, View};
 use super::{Limits, PlanRefusal, RoughCell};
@@ -61,7 +63,12 @@ impl Nominal {
         let slack = Vec3::new(1.0, 0.0, 1.0) * (VIEW_RADII * rough.radius_mm);
         let middle = Vec3::new(0.0, 0.0, standoff_mm);
         let view = View::new(limits, [middle - slack, middle + slack].into_iter());
-        let model = StationModel::new(&sweep(rough, standoff_mm), &view).ok_or(PlanRefusal::NothingWithinLimits)?;
+        let sweep = sweep(rough, standoff_mm);
+        // With the sensor at the base's origin the ball is where a capture sees it.
+        let at_origin = State { flange_from_sensor: Rigid::identity(), ball_in_base: Vec3::zeros() };
+        let about_sensor = about_sensor(&Normal::of(sweep.iter(), &at_origin));
+        let balls: Vec<Vec3> = sweep.iter().map(|capture| capture.centre_in_sensor).collect();
+        let model = StationModel::new(&balls, about_sensor, &view).ok_or(PlanRefusal::NothingWithinLimits)?;
         Ok(Self {
             cell: Cell {
                 mount: rough.mount,
@@ -74,13 +81,14 @@ impl Nominal {
     }
 }
 
-/// The captures of a sweep: the ball's centre in the sensor frame, and what a profile says about it.
-fn sweep(rough: &RoughCell, standoff_mm: f64) -> Vec<(Vec3, Mat3)> {
+/// The captures of a sweep, as a sensor at the base's origin would see the ball pass: what the profiles say about its
+/// centre.
+fn sweep(rough: &RoughCell, standoff_mm: f64) -> Vec<CentreObservation> {
     // An error of the orientation acts with the lever from the flange to the ball; across the lever in every direction that
     // a station may have.
     let ball_in_flange = match rough.mount {
-        crate::calibrate::Mount::OnFlange => rough.flange_from_sensor * nalgebra::Point3::new(0.0, 0.0, standoff_mm),
-        crate::calibrate::Mount::Fixed => rough.ball_in_base_mm.into(),
+        Mount::OnFlange => rough.flange_from_sensor * nalgebra::Point3::new(0.0, 0.0, standoff_mm),
+        Mount::Fixed => rough.ball_in_base_mm.into(),
     };
     let turned_mm = ORIENTATION_STD_DEG.to_radians() * ball_in_flange.coords.norm();
     let pose_covariance = Mat3::identity() * (POSITION_STD_MM.powi(2) + turned_mm.powi(2) * 2.0 / 3.0);
@@ -90,7 +98,8 @@ fn sweep(rough: &RoughCell, standoff_mm: f64) -> Vec<(Vec3, Mat3)> {
             let by_points = section_information(y_mm / rough.radius_mm);
             let damp = Mat3::identity() + by_points * pose_covariance;
             let information = damp.try_inverse().map_or(by_points, |damp| damp * by_points);
-            (Vec3::new(0.0, y_mm, standoff_mm), information)
+            let pose = Rigid::translation(0.0, -y_mm, -standoff_mm);
+            CentreObservation { information, ..CentreObservation::point(0, pose, Vec3::new(0.0, y_mm, standoff_mm)) }
         })
         .collect()
 }

@@ -154,7 +154,7 @@ impl Search {
 
     fn brings(&self, candidate: &Candidate, sensor_from_base: &Mat3) -> Hessian {
         let model = &self.cell.models[candidate.model_idx];
-        information_at(&model.information, shift(model, candidate.place), sensor_from_base)
+        information_at(&model.about_sensor, shift(model, candidate.place), sensor_from_base)
     }
 
     fn sensor_from_base(&self, orientation: Orientation) -> Mat3 {

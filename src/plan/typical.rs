@@ -2,10 +2,11 @@
 
 use nalgebra::{Matrix6, UnitQuaternion};
 
+use crate::calibrate::observation::CentreObservation;
 use crate::calibrate::{Reduced, Solution};
-use crate::geometry::{Mat3, Vec3};
+use crate::geometry::Vec3;
 
-use super::information::station_information;
+use super::information::about_sensor;
 use super::{Limits, PlanRefusal};
 
 /// A kind of station to be measured.
@@ -13,25 +14,30 @@ use super::{Limits, PlanRefusal};
 pub(super) struct StationModel {
     /// The ball's centre in the sensor frame at the first capture, mm.
     pub first_ball_in_sensor: Vec3,
-    /// What its captures say in the sensor frame, see [`station_information`].
-    pub information: Matrix6<f64>,
+    /// What its captures say about (rotation, translation), 1/rad² and 1/mm².
+    pub about_sensor: Matrix6<f64>,
     /// By how much the ball may be shifted across the line and along the range, least and most, mm.
     pub shift_mm: [[f64; 2]; 2],
 }
 
 impl StationModel {
-    /// From the ball's centre and the information about it at each capture, `None` if the ball cannot stay in view.
-    pub fn new(captures: &[(Vec3, Mat3)], view: &View) -> Option<Self> {
+    /// From the ball's centre in the sensor frame at each capture; `None` if the ball cannot stay in view.
+    pub fn new(balls_in_sensor: &[Vec3], about_sensor: Matrix6<f64>, view: &View) -> Option<Self> {
         let range = |axis: usize, [least, most]: [f64; 2]| {
-            let [low, high] = extent(captures.iter().map(|(ball, _)| ball[axis]));
+            let [low, high] = extent(balls_in_sensor.iter().map(|ball| ball[axis]));
             let shift = [least - low, most - high];
             (shift[0] <= shift[1]).then_some(shift)
         };
         Some(Self {
-            first_ball_in_sensor: captures.first()?.0,
-            information: station_information(captures.iter().copied()),
+            first_ball_in_sensor: *balls_in_sensor.first()?,
+            about_sensor,
             shift_mm: [range(0, view.across_mm)?, range(2, view.along_mm)?],
         })
+    }
+
+    /// How well it knows its ball by itself.
+    fn ball_information(&self) -> f64 {
+        self.about_sensor.fixed_view::<3, 3>(3, 3).into_owned().determinant()
     }
 }
 
@@ -69,46 +75,33 @@ fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
 /// # Errors
 /// [`PlanRefusal::NothingWithinLimits`] if the ball does not stay in view.
 pub(super) fn models(reduced: &Reduced, limits: &Limits) -> Result<Vec<StationModel>, PlanRefusal> {
-    let mut stations: Vec<Vec<(Vec3, Mat3)>> = (0..reduced.num_stations)
-        .map(|station| {
-            reduced
-                .observations
-                .iter()
-                .filter(|observation| observation.station == station)
-                .map(|observation| {
-                    (reduced.state.ball_in_sensor(&observation.base_from_flange), observation.information)
-                })
-                .collect()
+    let balls: Vec<(usize, Vec<Vec3>)> = reduced
+        .stations()
+        .map(|run| {
+            let ball = |observation: &CentreObservation| reduced.state.ball_in_sensor(&observation.base_from_flange);
+            (run[0].station, run.iter().map(ball).collect())
         })
         .collect();
-    stations.retain(|captures| !captures.is_empty());
-    let view = View::new(limits, stations.iter().flatten().map(|(ball, _)| *ball));
-    let (plus, minus): (Vec<_>, Vec<_>) = stations.into_iter().partition(|captures| captures[0].0.y >= 0.0);
-    let models: Vec<StationModel> = [plus, minus]
-        .into_iter()
-        .filter_map(median)
-        .filter_map(|captures| StationModel::new(&captures, &view))
-        .collect();
+    let view = View::new(limits, balls.iter().flat_map(|(_, balls)| balls).copied());
+    let stations = balls.iter().filter_map(|(station, balls)| {
+        StationModel::new(balls, about_sensor(&reduced.sums_of_station(*station, &reduced.state)), &view)
+    });
+    let (plus, minus): (Vec<_>, Vec<_>) = stations.partition(|station| station.first_ball_in_sensor.y >= 0.0);
+    let models: Vec<StationModel> = [plus, minus].into_iter().filter_map(median).collect();
     if models.is_empty() { Err(PlanRefusal::NothingWithinLimits) } else { Ok(models) }
 }
 
-/// The station in the middle by what it says about its ball.
-fn median(mut stations: Vec<Vec<(Vec3, Mat3)>>) -> Option<Vec<(Vec3, Mat3)>> {
-    let says =
-        |captures: &[(Vec3, Mat3)]| captures.iter().map(|(_, information)| information).sum::<Mat3>().determinant();
-    stations.sort_by(|a, b| says(a).total_cmp(&says(b)));
+/// The station in the middle by how well it knows its ball.
+fn median(mut stations: Vec<StationModel>) -> Option<StationModel> {
+    stations.sort_by(|a, b| a.ball_information().total_cmp(&b.ball_information()));
     let middle = stations.len() / 2;
     stations.into_iter().nth(middle)
 }
 
 /// The sensor in the base at the stations that were measured.
 pub(super) fn orientations(reduced: &Reduced) -> Vec<UnitQuaternion<f64>> {
-    let mut station = None;
-    let firsts = reduced
-        .observations
-        .iter()
-        .filter(|observation| station.replace(observation.station) != Some(observation.station));
-    firsts.map(|first| first.base_from_flange.rotation * reduced.state.flange_from_sensor.rotation).collect()
+    let mounting = reduced.state.flange_from_sensor.rotation;
+    reduced.stations().map(|run| run[0].base_from_flange.rotation * mounting).collect()
 }
 
 /// The middle of the balls that the stations saw at their first captures, in the sensor frame, mm.
