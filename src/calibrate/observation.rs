@@ -8,7 +8,8 @@ use crate::geometry::{Mat3, Rigid, Vec3};
 pub const NUM_UNKNOWNS: usize = 9;
 
 /// A quadratic in the ball's centre `s` in the sensor frame:
-/// `(s − c)ᵀ W (s − c) − 2 gᵀ (s − c)` with the linearisation point `c`, the information `W` and the pull `g`.
+/// `(s − c)ᵀ W (s − c) − 2 gᵀ (s − c) + k` with the linearisation point `c`, the information `W`, the pull `g` and the cost
+/// `k` that it has there.
 ///
 /// A measured centre has `c` at the measurement and no pull. A profile far from its own optimum, or one that is blind in
 /// a direction, needs no inverse of `W` in this form.
@@ -24,13 +25,28 @@ pub struct CentreObservation {
     pub information: Mat3,
     /// Half the negative gradient at the linearisation point, 1/mm.
     pub pull: Vec3,
+    /// The cost at the linearisation point.
+    pub constant: f64,
 }
 
 impl CentreObservation {
     /// A centre that was measured, with unit weight.
     #[must_use]
     pub fn point(station: usize, base_from_flange: Rigid, centre_in_sensor: Vec3) -> Self {
-        Self { station, base_from_flange, centre_in_sensor, information: Mat3::identity(), pull: Vec3::zeros() }
+        Self {
+            station,
+            base_from_flange,
+            centre_in_sensor,
+            information: Mat3::identity(),
+            pull: Vec3::zeros(),
+            constant: 0.0,
+        }
+    }
+
+    /// Half the negative gradient at a state: what the data still pull with, 1/mm.
+    #[must_use]
+    pub fn pull_at(&self, state: &State) -> Vec3 {
+        self.pull - self.information * (state.ball_in_sensor(&self.base_from_flange) - self.centre_in_sensor)
     }
 
     /// One measured centre a station, with unit weight.

@@ -112,6 +112,8 @@ pub struct Noise {
 pub struct BallProblem {
     /// Radius of the ball, mm.
     pub radius_mm: f64,
+    /// How well it is known, mm; with that the radius is estimated along with the calibration. `None`: it is taken as exact.
+    pub radius_std_mm: Option<f64>,
     /// Where the sensor is. For [`Mount::Fixed`] the captures hold the inverted poses.
     pub mount: Mount,
     /// Noise of the robot, where it is known. That of the sensor is measured from the residuals of its profiles.

@@ -53,6 +53,30 @@ impl Uncertainty {
     }
 }
 
+/// The noise of the robot that the weights of a solution stand for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NoiseModel {
+    /// Standard deviation of each coordinate of a reported position, of every pose by itself, mm.
+    pub position_std_mm: f64,
+    /// Standard deviation of a reported orientation about each axis, of every pose by itself, rad.
+    pub orientation_std_rad: f64,
+    /// The same for what all poses of a station have in common, on top of that, mm.
+    pub station_position_std_mm: f64,
+    /// The same for the orientation, rad.
+    pub station_orientation_std_rad: f64,
+    /// Whether the first two are the session's; otherwise they are estimated from the data.
+    pub is_stated: bool,
+}
+
+/// The ball's radius where it was estimated along with the calibration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EstimatedRadius {
+    /// The radius, mm.
+    pub radius_mm: f64,
+    /// Its standard deviation, mm.
+    pub std_mm: f64,
+}
+
 /// One step of a sweep as the curve shows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SweepPoint {
@@ -141,6 +165,10 @@ pub struct Solution {
     pub warnings: Vec<Warning>,
     /// Iterations of the last solve.
     pub num_iterations: usize,
+    /// The noise that the data were weighed by; `None` for methods that weigh all stations alike.
+    pub noise: Option<NoiseModel>,
+    /// The ball's radius where it was estimated as well.
+    pub radius: Option<EstimatedRadius>,
     /// The data at the minimum, for validation, diagnosis and planning.
     pub reduced: Reduced,
     /// How the result follows the ball's radius: change of (rotation about the sensor's axes in rad, translation along the

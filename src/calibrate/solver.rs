@@ -29,13 +29,15 @@ pub struct Minimum {
     pub state: State,
     /// The matrix of the normal equations there.
     pub hessian: Hessian,
+    /// Sum of squares there.
+    pub cost: f64,
     /// Steps taken.
     pub num_iterations: usize,
     /// Whether the last step was negligible.
     pub converged: bool,
 }
 
-/// Minimises the sum of the observations from a start.
+/// Minimises the sum of independent observations from a start.
 ///
 /// # Errors
 /// [`SolveError::Undetermined`] if a combination of the unknowns is free, [`SolveError::Diverged`] if numbers run away.
@@ -43,18 +45,28 @@ pub fn minimise<'a, I>(observations: &I, start: State) -> Result<Minimum, SolveE
 where
     I: Iterator<Item = &'a CentreObservation> + Clone,
 {
-    let normal = Normal::of(observations.clone(), &start);
-    minimise_from(observations, start, normal, SETTLED)
+    minimise_sums(|state| Normal::of(observations.clone(), state), start)
+}
+
+/// The same for sums that are made by the caller.
+///
+/// # Errors
+/// As [`minimise`].
+pub fn minimise_sums(sums_at: impl Fn(&State) -> Normal, start: State) -> Result<Minimum, SolveError> {
+    let normal = sums_at(&start);
+    minimise_from(sums_at, start, normal, SETTLED)
 }
 
 /// The same with the sums at the start known already, ending at a step below `settled` (rad, mm/100).
 ///
 /// # Errors
 /// As [`minimise`].
-pub fn minimise_from<'a, I>(observations: &I, start: State, normal: Normal, settled: f64) -> Result<Minimum, SolveError>
-where
-    I: Iterator<Item = &'a CentreObservation> + Clone,
-{
+pub fn minimise_from(
+    sums_at: impl Fn(&State) -> Normal,
+    start: State,
+    normal: Normal,
+    settled: f64,
+) -> Result<Minimum, SolveError> {
     let mut state = start;
     let mut normal = normal;
     let mut damping = 0.0;
@@ -66,9 +78,15 @@ where
             return Err(SolveError::Diverged);
         }
         if size <= settled {
-            return Ok(Minimum { state: trial, hessian: normal.hessian, num_iterations: iteration, converged: true });
+            return Ok(Minimum {
+                state: trial,
+                hessian: normal.hessian,
+                cost: normal.cost,
+                num_iterations: iteration,
+                converged: true,
+            });
         }
-        let trial_normal = Normal::of(observations.clone(), &trial);
+        let trial_normal = sums_at(&trial);
         // Costs are differences from the linearisation points; near the minimum they are equal to rounding.
         let rounding = 1e-12 * normal.cost.abs().max(trial_normal.cost.abs());
         if trial_normal.cost <= normal.cost + rounding || size < 1e-9 {
@@ -81,7 +99,7 @@ where
             damping = (damping * 10.0).max(1e-6);
         }
     }
-    Ok(Minimum { state, hessian: normal.hessian, num_iterations: MAX_ITERATIONS, converged: false })
+    Ok(Minimum { state, hessian: normal.hessian, cost: normal.cost, num_iterations: MAX_ITERATIONS, converged: false })
 }
 
 fn step_size(step: &Gradient) -> f64 {
@@ -98,7 +116,7 @@ pub struct Normal {
     pub hessian: Hessian,
     /// Half the negative gradient.
     pub gradient: Gradient,
-    /// Cost, relative to that at the linearisation points.
+    /// Sum of squares.
     pub cost: f64,
 }
 
@@ -125,7 +143,7 @@ impl Normal {
             let offset = centre - observation.centre_in_sensor;
             let weighted_offset = observation.information * offset;
             let pull = observation.pull - weighted_offset;
-            cost += offset.dot(&weighted_offset) - 2.0 * observation.pull.dot(&offset);
+            cost += observation.constant + offset.dot(&weighted_offset) - 2.0 * observation.pull.dot(&offset);
             // [s]ᵀ W and Cᵀ W once, the blocks from them.
             let turned = hat(centre).transpose() * observation.information;
             let in_base = sensor_from_base.transpose() * observation.information;
@@ -160,10 +178,44 @@ impl Normal {
         }
         Self { hessian, gradient, cost }
     }
+
+    /// The sums of observations that share an unknown shift of the ball's centre in the sensor frame, with that shift
+    /// integrated out; `covariance` is the shift's, mm².
+    ///
+    /// A shift acts as one of the sensor does with the other sign, so what couples it to the unknowns is at hand.
+    #[must_use]
+    pub fn with_common_shift(self, covariance: &Mat3) -> Self {
+        let by_shift = self.hessian.fixed_view::<NUM_UNKNOWNS, 3>(0, 3).into_owned();
+        let information = self.hessian.fixed_view::<3, 3>(3, 3).into_owned();
+        let pull = self.gradient.fixed_rows::<3>(3).into_owned();
+        let Some(damp) = (Mat3::identity() + information * covariance).try_inverse() else { return self };
+        let reach = covariance * damp;
+        Self {
+            hessian: self.hessian - by_shift * reach * by_shift.transpose(),
+            gradient: self.gradient - by_shift * (reach * pull),
+            cost: self.cost - pull.dot(&(reach * pull)),
+        }
+    }
+}
+
+impl std::ops::Mul<f64> for Normal {
+    type Output = Self;
+
+    fn mul(self, times: f64) -> Self {
+        Self { hessian: self.hessian * times, gradient: self.gradient * times, cost: self.cost * times }
+    }
+}
+
+impl std::ops::AddAssign for Normal {
+    fn add_assign(&mut self, other: Self) {
+        self.hessian += other.hessian;
+        self.gradient += other.gradient;
+        self.cost += other.cost;
+    }
 }
 
 /// The diagonal matrix that scales the diagonal of `scaling * hessian * scaling` to one, so that mm and rad compare.
-fn unit_diagonal_scaling(hessian: &Hessian) -> Hessian {
+pub(crate) fn unit_diagonal_scaling(hessian: &Hessian) -> Hessian {
     Hessian::from_diagonal(&hessian.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 0.0 }))
 }
 

@@ -1,5 +1,10 @@
 //! Small statistics: root mean square, median, robust spread, and a seeded generator.
 
+use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal};
+
+/// With fewer degrees of freedom a variance is not known at all; the quantile of a half of one is beyond any use already.
+const LEAST_FREEDOM: f64 = 0.5;
+
 /// A normal distribution's standard deviation over its median absolute deviation.
 pub const STD_OVER_MAD: f64 = 1.482_602_218_505_602;
 
@@ -37,6 +42,64 @@ pub fn robust_std_about_zero(values: &mut [f64]) -> f64 {
         *value = value.abs();
     }
     STD_OVER_MAD * median(values)
+}
+
+/// The value that an F distribution keeps within with a probability; a χ² over its degrees of freedom where `below` is infinite.
+#[must_use]
+pub fn f_quantile(probability: f64, above: f64, below: f64) -> f64 {
+    /// From here on F is χ² to four digits.
+    const AS_GOOD_AS_INFINITE: f64 = 1e5;
+    let quantile = if below < AS_GOOD_AS_INFINITE {
+        FisherSnedecor::new(above, below.max(LEAST_FREEDOM)).map(|f| f.inverse_cdf(probability))
+    } else {
+        return ChiSquared::new(above).map_or(f64::NAN, |chi| chi.inverse_cdf(probability) / above);
+    };
+    quantile.unwrap_or(f64::NAN)
+}
+
+/// The probability that a sum of so many squares of normal values of unit variance exceeds `value` by chance.
+#[must_use]
+pub fn chi_squared_p_value(value: f64, degrees_of_freedom: f64) -> f64 {
+    ChiSquared::new(degrees_of_freedom).map_or(f64::NAN, |chi| chi.sf(value.max(0.0)))
+}
+
+/// The value below which a standard normal value lies with a probability within (0, 1).
+#[must_use]
+pub fn normal_quantile(probability: f64) -> f64 {
+    Normal::standard().inverse_cdf(probability)
+}
+
+/// The probability of a standard normal value below `value`.
+#[must_use]
+pub fn normal_cdf(value: f64) -> f64 {
+    Normal::standard().cdf(value)
+}
+
+/// Vigna's `SplitMix64`: a few lines that give the same sequence on every machine.
+#[derive(Clone, Debug)]
+pub struct SplitMix(u64);
+
+impl SplitMix {
+    /// The sequence of a seed.
+    #[must_use]
+    pub const fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    fn draw(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut mixed = self.0;
+        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        mixed ^ (mixed >> 31)
+    }
+
+    /// A number below `limit`, which is above zero; the bias of the remainder is far below anything that matters here.
+    pub fn below(&mut self, limit: usize) -> usize {
+        #[expect(clippy::cast_possible_truncation, reason = "the remainder is below a usize")]
+        let index = (self.draw() % limit as u64) as usize;
+        index
+    }
 }
 
 #[cfg(test)]

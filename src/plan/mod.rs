@@ -1,12 +1,29 @@
 //! Where to measure next: among the orientations that the robot may take, those that make the result better known most.
+//!
+//! Every station adds its information about the nine unknowns; how much follows from its orientation, from where the ball
+//! is in the profile, and from what a station of this kind says about the ball. So the effect of a station is known before
+//! it is measured. Stations are chosen one after the other, each for the least σ of the workspace point.
+//!
+//! As everywhere in [`crate::calibrate`], poses are inverted inside for [`Mount::Fixed`], and inverted back at the end.
+
+mod information;
+mod nominal;
+mod orientation;
+mod search;
+mod typical;
 
 use thiserror::Error;
 
+use crate::calibrate::ball::MIN_STATIONS;
 use crate::calibrate::{BallProblem, Mount, Solution};
 use crate::geometry::{Base, Flange, Rigid, Transform, Vec3};
 
+use information::Information;
+use orientation::Orientations;
+use search::{Cell, Search};
+
 /// What the robot and the sensor allow. Angles are relative to the mean orientation of the session's stations, or to
-/// looking straight down where there are none.
+/// looking along the given direction where there are none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     /// Most tilt of the range axis, degrees.
@@ -53,7 +70,7 @@ pub struct Plan {
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum PlanRefusal {
     /// The limits exclude everything.
-    #[error("no orientation lies within the limits; allow more tilt or spin")]
+    #[error("nothing lies within the limits; allow more tilt or spin, a wider range of stand-off, or more width")]
     NothingWithinLimits,
     /// The solution's information is not that of a calibration.
     #[error("the solution is too poor to plan from")]
@@ -65,13 +82,15 @@ pub enum PlanRefusal {
 pub struct RoughCell {
     /// Where the sensor is mounted.
     pub mount: Mount,
-    /// The sensor on the flange within 10° and 20 mm or so; in the base for [`Mount::Fixed`].
+    /// The sensor on the flange within 10° and 20 mm or so; in the base for [`Mount::Fixed`]. Its z points away from the
+    /// sensor.
     pub flange_from_sensor: Rigid,
     /// The ball in the base; in the flange for [`Mount::Fixed`]. mm.
     pub ball_in_base_mm: Vec3,
     /// The ball's radius, mm.
     pub radius_mm: f64,
-    /// The direction in the base from which the sensor looks at the ball in the middle of all stations.
+    /// The direction in the base along which the sensor looks at the ball in the middle of all stations; in the flange for
+    /// [`Mount::Fixed`].
     pub looks_along_in_base: Vec3,
 }
 
@@ -80,10 +99,49 @@ pub struct RoughCell {
 /// # Errors
 /// [`PlanRefusal`].
 pub fn next_stations(
-    _problem: &BallProblem,
-    _solution: &Solution,
-    _limits: &Limits,
-    _num: usize,
+    problem: &BallProblem,
+    solution: &Solution,
+    limits: &Limits,
+    num: usize,
 ) -> Result<Plan, PlanRefusal> {
-    Err(PlanRefusal::Undetermined)
+    let reduced = &solution.reduced;
+    let orientations = Orientations::about_mean_of(reduced, limits)?;
+    let reference_point = solution
+        .uncertainty
+        .as_ref()
+        .map_or_else(|| typical::middle_of_balls(solution), |known| known.reference_point_in_sensor_mm);
+    let cell = Cell { mount: problem.mount, state: reduced.state, models: typical::models(reduced, limits)? };
+    let known = Information::new(reduced.hessian, reference_point);
+    let before = known.point_std().ok_or(PlanRefusal::Undetermined)?;
+    let mut search = Search::new(cell, orientations, known, typical::orientations(reduced));
+    // The stated σ knows more about the noise than the information does, so the information gives the ratio only.
+    let stated = solution.uncertainty.as_ref().map(|known| known.workspace_point_std_mm);
+    let stations = (0..num)
+        .map(|_| {
+            search
+                .next(|information| stated.zip(information.point_std()).map(|(stated, after)| stated * after / before))
+        })
+        .collect();
+    Ok(Plan { workspace_point_std_mm: stated, stations })
+}
+
+/// `num` stations for a cell in which nothing is measured yet. The first one looks along the given direction; the rest are
+/// chosen as in [`next_stations`], for sweeps across the ball with a sensor and a robot of usual noise.
+///
+/// # Errors
+/// [`PlanRefusal`].
+pub fn from_nothing(cell: &RoughCell, limits: &Limits, num: usize) -> Result<Plan, PlanRefusal> {
+    let nominal = nominal::Nominal::new(cell, limits)?;
+    let orientations = Orientations::new(nominal.reference, limits)?;
+    let prior = Information::new(nominal::prior(), nominal.reference_point_in_sensor);
+    let mut search = Search::new(nominal.cell, orientations, prior, Vec::new());
+    let mut stations = Vec::with_capacity(num);
+    for idx in 0..num {
+        let point_std = |information: &Information| {
+            // What is known of the mounting by guess is no measurement.
+            (idx + 1 >= MIN_STATIONS).then(|| information.without(&nominal::prior()).point_std()).flatten()
+        };
+        stations.push(if idx == 0 { search.reference(point_std) } else { search.next(point_std) });
+    }
+    Ok(Plan { workspace_point_std_mm: None, stations })
 }

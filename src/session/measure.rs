@@ -134,6 +134,7 @@ pub fn ball_problem(session: &Session, measured: &Measured) -> Result<BallProble
         .collect();
     Ok(BallProblem {
         radius_mm,
+        radius_std_mm: None,
         mount: session.mount,
         noise: Noise {
             position_std_mm: session.robot.position_std_mm,

@@ -1,16 +1,15 @@
 //! From a minimum to a solution: error tables, validation, uncertainty and the warnings that all methods share.
 
-use nalgebra::Vector6;
-
 use crate::calibrate::observation::{CentreObservation, State};
 use crate::calibrate::rotation_start::{PoseGeometry, rotation_span};
-use crate::calibrate::solver::{Minimum, covariance_for_unit_noise, sensor_block};
-use crate::calibrate::uncertainty::uncertainty;
-use crate::calibrate::validation::{leave_one_out, station_ball};
+use crate::calibrate::solver::{Gradient, Minimum, covariance_for_unit_noise};
+use crate::calibrate::uncertainty::{Spread, change_by_radius, uncertainty};
+use crate::calibrate::validation::leave_one_out;
 use crate::calibrate::{
-    BallProblem, Method, Reduced, RmsMax, Side, Solution, SolveError, Station, StationSolution, Sweep, Warning,
+    BallProblem, EstimatedRadius, Method, NoiseModel, Reduced, RmsMax, Side, Solution, SolveError, Station,
+    StationSolution, Sweep, Warning,
 };
-use crate::geometry::{Rigid, Transform, Vec3, stats};
+use crate::geometry::{Mat3, Rigid, Transform, Vec3, stats};
 
 use super::RECOMMENDED_STATIONS;
 
@@ -43,9 +42,17 @@ pub(super) struct Found<'a> {
     pub problem: &'a BallProblem,
     pub stations: Vec<StationFacts<'a>>,
     pub observations: Vec<CentreObservation>,
+    /// Covariance of what is common to each station, in the sensor frame, mm²; empty where nothing is.
+    pub common_covariance: Vec<Mat3>,
     pub minimum: Minimum,
-    /// Factor on the inverse of the normal equations; `None` if nothing is left over to judge by.
-    pub variance_factor: Option<f64>,
+    /// From the normal equations to a covariance; `None` if nothing is left over to judge by.
+    pub spread: Option<Spread>,
+    /// The noise that the weights stand for.
+    pub noise: Option<NoiseModel>,
+    /// The radius where it was estimated.
+    pub radius: Option<EstimatedRadius>,
+    /// Change of the unknowns with the radius, a mm.
+    pub by_radius: Gradient,
     /// See [`station_ball`].
     pub prior_information: f64,
     pub poses: PoseGeometry,
@@ -58,10 +65,19 @@ impl Found<'_> {
     pub fn into_solution(mut self) -> Result<Solution, SolveError> {
         let state = self.minimum.state;
         let num_stations = self.stations.len();
-        let balls_in_base: Vec<Vec3> = (0..num_stations).map(|idx| self.station_ball(idx)).collect();
+        let reduced = Reduced {
+            observations: std::mem::take(&mut self.observations),
+            common_covariance: std::mem::take(&mut self.common_covariance),
+            num_stations,
+            state,
+            hessian: self.minimum.hessian,
+            prior_information: self.prior_information,
+            variance_factor: self.spread.as_ref().map(Spread::factor),
+        };
+        let balls_in_base: Vec<Vec3> = (0..num_stations).map(|idx| reduced.station_ball(idx, &state)).collect();
         #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 stations")]
         let mean = balls_in_base.iter().sum::<Vec3>() / num_stations as f64;
-        let left_out = leave_one_out(&self.observations, num_stations, &state, self.prior_information);
+        let left_out = leave_one_out(&reduced);
         let first_poses: Vec<Rigid> = self.stations.iter().map(|facts| *first_pose(facts.station)).collect();
         let span = rotation_span(&first_poses);
         let unit_covariance = covariance_for_unit_noise(&self.minimum.hessian)?;
@@ -70,10 +86,14 @@ impl Found<'_> {
             .zip(&balls_in_base)
             .map(|(pose, ball_in_base)| State { ball_in_base: *ball_in_base, ..state }.ball_in_sensor(pose))
             .collect();
-        let uncertainty = self.variance_factor.map(|factor| {
-            let covariance = sensor_block(&unit_covariance) * factor;
-            uncertainty(&covariance, &state.flange_from_sensor, self.reference_point(&balls_in_sensor))
+        let reference_point = self.reference_point(&balls_in_sensor);
+        let radius_std_mm = self.radius.map_or(self.problem.radius_std_mm, |radius| Some(radius.std_mm));
+        let uncertainty = self.spread.as_ref().map(|spread| {
+            let by_radius = self.by_radius * radius_std_mm.unwrap_or(0.0);
+            uncertainty(&unit_covariance, spread, &by_radius, &state.flange_from_sensor, reference_point)
         });
+        let (change_by_radius, workspace_point_by_radius) =
+            change_by_radius(&self.by_radius, &state.flange_from_sensor, reference_point);
         let in_sample: Vec<f64> = balls_in_base.iter().map(|ball| (ball - state.ball_in_base).norm()).collect();
         self.add_shared_warnings(span, &left_out, &in_sample);
         let stations = self
@@ -106,25 +126,12 @@ impl Found<'_> {
             rotation_span_rad: span,
             warnings: self.warnings,
             num_iterations: self.minimum.num_iterations,
-            reduced: Reduced {
-                observations: self.observations,
-                num_stations,
-                state,
-                hessian: self.minimum.hessian,
-                prior_information: self.prior_information,
-                variance_factor: self.variance_factor,
-            },
-            change_by_radius: Vector6::zeros(),
-            workspace_point_by_radius: Vec3::zeros(),
+            noise: self.noise,
+            radius: self.radius,
+            reduced,
+            change_by_radius,
+            workspace_point_by_radius,
         })
-    }
-
-    fn station_ball(&self, station: usize) -> Vec3 {
-        station_ball(
-            self.observations.iter().filter(|observation| observation.station == station),
-            &self.minimum.state,
-            self.prior_information,
-        )
     }
 
     fn reference_point(&self, balls_in_sensor: &[Vec3]) -> Vec3 {
@@ -134,7 +141,8 @@ impl Found<'_> {
                 let scale = 1.0 / balls_in_sensor.len() as f64;
                 balls_in_sensor.iter().sum::<Vec3>() * scale
             },
-            |distance| Vec3::new(0.0, 0.0, distance),
+            // A distance has no sign; the balls tell on which side of its origin the sensor looks.
+            |distance| Vec3::new(0.0, 0.0, distance.copysign(balls_in_sensor.iter().map(|ball| ball.z).sum())),
         )
     }
 

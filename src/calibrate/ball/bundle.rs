@@ -9,13 +9,13 @@
 
 use crate::calibrate::observation::{CentreObservation, State};
 use crate::calibrate::rotation_start::PoseGeometry;
+use crate::calibrate::uncertainty::Spread;
 use crate::calibrate::{BallProblem, Method, Reading, Solution, SolveError, Station, Warning};
 use crate::fit::ArcFit;
 use crate::geometry::{Rigid, stats};
 
 use super::assemble::{Found, StationFacts, first_pose};
 use super::passes::settle;
-use super::pose_noise::station_variance_factor;
 use super::profile_sums::profile_sums;
 use super::refused::{first_refusal, refused_captures};
 use super::{MIN_STATIONS, fixed_point, max_arc};
@@ -44,9 +44,8 @@ pub fn solve(problem: &BallProblem) -> Result<Solution, SolveError> {
     let poses = PoseGeometry::new(&poses_of_stations)?;
     let start = start(problem, &mut warnings)?;
     let profiles = used_profiles(&stations, problem);
-    let settled = settle(|state| linearised(&profiles, state, problem.radius_mm), problem, start)?;
+    let settled = settle(|state, radius_mm| linearised(&profiles, state, radius_mm), problem, start)?;
     warnings.extend(max_arc::radius_warning_at(problem, &settled.minimum.state));
-    let variance_factor = station_variance_factor(&settled.observations, &settled.minimum.state, stations.len());
     let facts = stations
         .into_iter()
         .map(|station| StationFacts { station, side_cost_ratio: None, ball_in_sensor_std_mm: None, sweep: None })
@@ -55,9 +54,13 @@ pub fn solve(problem: &BallProblem) -> Result<Solution, SolveError> {
         method: Method::BallBundle,
         problem,
         stations: facts,
+        spread: Some(Spread::Modelled(settled.spread)),
+        noise: Some(settled.pose_noise.model()),
+        radius: settled.radius,
+        by_radius: settled.by_radius,
         observations: settled.observations,
+        common_covariance: settled.common_covariance,
         minimum: settled.minimum,
-        variance_factor,
         // A station blind along y still knows that the ball is not further off than its radius.
         prior_information: 1.0 / (problem.radius_mm * problem.radius_mm),
         poses,
@@ -107,7 +110,7 @@ fn start(problem: &BallProblem, warnings: &mut Vec<Warning>) -> Result<State, So
 pub fn refine(problem: &BallProblem, start: State) -> Result<State, SolveError> {
     let stations = stations_with_profiles(problem, &mut Vec::new())?;
     let profiles = used_profiles(&stations, problem);
-    let settled = settle(|state| linearised(&profiles, state, problem.radius_mm), problem, start)?;
+    let settled = settle(|state, radius_mm| linearised(&profiles, state, radius_mm), problem, start)?;
     Ok(settled.minimum.state)
 }
 
@@ -143,6 +146,7 @@ fn linearised(profiles: &[UsedProfile<'_>], state: &State, ball_radius_mm: f64) 
                 centre_in_sensor: centre,
                 information: sums.information * profile.weight,
                 pull: sums.pull * profile.weight,
+                constant: sums.cost * profile.weight,
             }
         })
         .collect()

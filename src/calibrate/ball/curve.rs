@@ -100,6 +100,7 @@ pub(super) fn section_observation(
         centre_in_sensor: predicted,
         information: (information + information.transpose()) * 0.5,
         pull: -(by_predicted.transpose() * weight * residual),
+        constant: residual.dot(&(weight * residual)),
     })
 }
 

@@ -6,7 +6,8 @@
 
 use crate::calibrate::observation::{CentreObservation, State};
 use crate::calibrate::rotation_start::PoseGeometry;
-use crate::calibrate::solver::minimise;
+use crate::calibrate::solver::{Gradient, Minimum, Normal, covariance_for_unit_noise, minimise};
+use crate::calibrate::uncertainty::Spread;
 use crate::calibrate::{BallProblem, Method, Reading, Side, SideChoice, Solution, SolveError, Station, Warning};
 use crate::fit::ArcFit;
 use crate::geometry::{Rigid, Vec3, stats};
@@ -20,6 +21,8 @@ use super::side::{SideCandidate, resolve_sides};
 const SIDE_RATIO: f64 = 2.0;
 /// y counts as blind when its σ is this many times that of x and z.
 const BLIND_RATIO: f64 = 10.0;
+/// Differences by the radius are taken over this part of it.
+const RADIUS_STEP_PART: f64 = 1e-4;
 /// A section above the ball's radius by more than this many σ is not noise.
 const LARGER_AT_STDS: f64 = 3.0;
 
@@ -30,6 +33,15 @@ struct Section<'a> {
 }
 
 impl Section<'_> {
+    /// The candidates if the ball had another radius; a reduced point stays where it is.
+    fn at_radius(&self, radius_mm: f64) -> SideCandidate {
+        let size_y_mm = match self.station.captures.first().map(|capture| &capture.reading) {
+            Some(Reading::Arc(arc)) => distance_from_plane(arc, radius_mm).0,
+            _ => self.candidate.size_y_mm,
+        };
+        SideCandidate { size_y_mm, ..self.candidate }
+    }
+
     /// Whether the ball's centre is clearly off the laser plane; if not, the side does not matter and blindness is the
     /// finding.
     fn y_is_seen(&self) -> bool {
@@ -72,9 +84,10 @@ pub(super) fn find(problem: &BallProblem) -> Result<Found<'_>, SolveError> {
     let start = poses.reduced(&centres).state(resolved.minimum.flange_from_sensor);
     let observations = CentreObservation::points(&base_from_flange, &centres);
     let minimum = minimise(&observations.iter(), start)?;
+    let by_radius = change_by_radius(problem, &sections, &resolved.sides, &base_from_flange, &minimum)?;
     add_side_warning(&sections, &resolved.cost_ratios, &mut warnings);
     add_blind_warning(&sections, &mut warnings);
-    let variance_factor = mean_square_residual(&observations, &minimum.state);
+    let spread = scaled_spread(&observations, &minimum.state);
     let stations = sections
         .iter()
         .zip(resolved.cost_ratios)
@@ -90,12 +103,34 @@ pub(super) fn find(problem: &BallProblem) -> Result<Found<'_>, SolveError> {
         problem,
         stations,
         observations,
+        common_covariance: Vec::new(),
         minimum,
-        variance_factor,
+        spread,
+        noise: None,
+        radius: None,
+        by_radius,
         prior_information: 0.0,
         poses,
         warnings,
     })
+}
+
+/// How the minimum follows the radius: with a larger ball every section is further from its centre.
+fn change_by_radius(
+    problem: &BallProblem,
+    sections: &[Section<'_>],
+    sides: &[Side],
+    base_from_flange: &[Rigid],
+    minimum: &Minimum,
+) -> Result<Gradient, SolveError> {
+    let step_mm = RADIUS_STEP_PART * problem.radius_mm;
+    let gradient_at = |radius_mm: f64| {
+        let centres: Vec<Vec3> =
+            sections.iter().zip(sides).map(|(section, side)| section.at_radius(radius_mm).centre(*side)).collect();
+        Normal::of(CentreObservation::points(base_from_flange, &centres).iter(), &minimum.state).gradient
+    };
+    let slope = (gradient_at(problem.radius_mm + step_mm) - gradient_at(problem.radius_mm - step_mm)) / (2.0 * step_mm);
+    Ok(covariance_for_unit_noise(&minimum.hessian)? * slope)
 }
 
 /// The first capture of a station as candidates for the ball's centre; reduced points are taken as they are.
@@ -184,8 +219,8 @@ fn add_blind_warning(sections: &[Section<'_>], warnings: &mut Vec<Warning>) {
     }
 }
 
-/// Mean square residual a degree of freedom, for unit-weight points, mm²; `None` if nothing is left over.
-pub(super) fn mean_square_residual(observations: &[CentreObservation], state: &State) -> Option<f64> {
+/// The scale that unit-weight points set by their own scatter; `None` if nothing is left over.
+pub(super) fn scaled_spread(observations: &[CentreObservation], state: &State) -> Option<Spread> {
     let cost: f64 = observations
         .iter()
         .map(|observation| {
@@ -194,5 +229,6 @@ pub(super) fn mean_square_residual(observations: &[CentreObservation], state: &S
         .sum();
     let freedom = (3 * observations.len()).checked_sub(9).filter(|freedom| *freedom > 0)?;
     #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 stations")]
-    Some(cost / freedom as f64)
+    let degrees_of_freedom = freedom as f64;
+    Some(Spread::Scaled { factor: cost / degrees_of_freedom, degrees_of_freedom })
 }

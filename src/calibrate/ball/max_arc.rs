@@ -8,13 +8,13 @@
 
 use crate::calibrate::observation::{CentreObservation, State};
 use crate::calibrate::rotation_start::PoseGeometry;
+use crate::calibrate::uncertainty::Spread;
 use crate::calibrate::{BallProblem, Method, Solution, SolveError, Sweep, Warning};
 use crate::geometry::{Rigid, stats};
 
 use super::assemble::{Found, StationFacts};
 use super::curve::{evaluated_sweep, fit_curve, radius_from_sweeps, section_observation, section_residual};
 use super::passes::{Settled, settle};
-use super::pose_noise::station_variance_factor;
 use super::sweep::{StationSweep, step_warning, sweeps, travel_direction};
 use super::{fixed_point, max_arc_step};
 
@@ -52,7 +52,7 @@ fn find(problem: &BallProblem) -> Result<Found<'_>, SolveError> {
         .iter()
         .map(|sweep| {
             let curve =
-                fit_curve(problem, sweep, &state, found.pose_noise.position_std_mm).ok_or(SolveError::Diverged)?;
+                fit_curve(problem, sweep, &state, found.pose_noise.position_std_mm()).ok_or(SolveError::Diverged)?;
             Ok(StationFacts {
                 station: sweep.station,
                 side_cost_ratio: None,
@@ -64,14 +64,17 @@ fn find(problem: &BallProblem) -> Result<Found<'_>, SolveError> {
     add_sweep_warnings(&stations, &mut warnings);
     let evaluated: Vec<Sweep> = stations.iter().filter_map(|facts| facts.sweep.clone()).collect();
     warnings.extend(radius_warning(problem, &evaluated));
-    let variance_factor = station_variance_factor(&found.observations, &found.minimum.state, sweeps.len());
     Ok(Found {
         method: Method::BallMaxArc,
         problem,
         stations,
+        spread: Some(Spread::Modelled(found.spread)),
+        noise: Some(found.pose_noise.model()),
+        radius: found.radius,
+        by_radius: found.by_radius,
         observations: found.observations,
+        common_covariance: found.common_covariance,
         minimum: found.minimum,
-        variance_factor,
         // A station blind along y still knows that the ball is not further off than its radius.
         prior_information: 1.0 / (problem.radius_mm * problem.radius_mm),
         poses,
@@ -108,7 +111,7 @@ fn settle_from_best_start(problem: &BallProblem, sweeps: &[StationSweep<'_>]) ->
     let mut failure = SolveError::Diverged;
     for start in [max_arc_step::state as Start, fixed_point::state] {
         let Ok(start) = start(problem) else { continue };
-        match settle(|state| linearised(problem, sweeps, state), problem, start) {
+        match settle(|state, radius_mm| linearised(sweeps, state, radius_mm), problem, start) {
             Ok(settled) => {
                 let residual_mm = rms_section_residual(problem, sweeps, &settled.minimum.state);
                 let fits = residual_mm < FITS_PART * problem.radius_mm;
@@ -125,14 +128,14 @@ fn settle_from_best_start(problem: &BallProblem, sweeps: &[StationSweep<'_>]) ->
     best.map(|(_, settled)| settled).ok_or(failure)
 }
 
-fn linearised(problem: &BallProblem, sweeps: &[StationSweep<'_>], state: &State) -> Vec<CentreObservation> {
+fn linearised(sweeps: &[StationSweep<'_>], state: &State, radius_mm: f64) -> Vec<CentreObservation> {
     sweeps
         .iter()
         .enumerate()
         .flat_map(|(station, sweep)| {
             sweep.steps.iter().filter_map(move |step| {
                 let predicted = state.ball_in_sensor(step.base_from_flange);
-                section_observation(station, step, problem.radius_mm, predicted)
+                section_observation(station, step, radius_mm, predicted)
             })
         })
         .collect()

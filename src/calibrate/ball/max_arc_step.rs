@@ -6,12 +6,12 @@
 
 use crate::calibrate::observation::{CentreObservation, State};
 use crate::calibrate::rotation_start::PoseGeometry;
-use crate::calibrate::solver::minimise;
+use crate::calibrate::solver::{Gradient, minimise};
 use crate::calibrate::{BallProblem, Method, Solution, SolveError};
 use crate::geometry::{Rigid, Vec3};
 
 use super::assemble::{Found, StationFacts};
-use super::fixed_point::mean_square_residual;
+use super::fixed_point::scaled_spread;
 use super::sweep::{StationSweep, step_warning, sweeps, travel_direction};
 
 /// Where the published search stops: at the first section with l ≥ R, or, as with noise it may never come, at the largest.
@@ -69,7 +69,7 @@ fn find(problem: &BallProblem) -> Result<Found<'_>, SolveError> {
     let start = poses.reduced(&centres).state(rotation);
     let observations = CentreObservation::points(&base_from_flange, &centres);
     let minimum = minimise(&observations.iter(), start)?;
-    let variance_factor = mean_square_residual(&observations, &minimum.state);
+    let spread = scaled_spread(&observations, &minimum.state);
     let stations = sweeps
         .iter()
         .map(|sweep| StationFacts {
@@ -84,8 +84,13 @@ fn find(problem: &BallProblem) -> Result<Found<'_>, SolveError> {
         problem,
         stations,
         observations,
+        common_covariance: Vec::new(),
         minimum,
-        variance_factor,
+        spread,
+        noise: None,
+        radius: None,
+        // The radius enters by the rule to stop at only.
+        by_radius: Gradient::zeros(),
         prior_information: 0.0,
         poses,
         warnings,

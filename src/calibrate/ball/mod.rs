@@ -15,6 +15,9 @@ mod profile_sums;
 mod refused;
 mod side;
 mod sweep;
+mod variance_components;
+
+pub use variance_components::VarianceSpread;
 
 /// Three unknowns a station must cover the nine of the problem, with one station to spare for judging.
 pub const MIN_STATIONS: usize = 4;

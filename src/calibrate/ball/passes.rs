@@ -1,10 +1,13 @@
 //! Passes over the data until nothing moves: linearise, weigh by the noise of the poses, minimise, and again.
 
 use crate::calibrate::observation::{CentreObservation, State};
-use crate::calibrate::solver::{Minimum, minimise};
-use crate::calibrate::{BallProblem, SolveError};
+use crate::calibrate::reduced::sums_at;
+use crate::calibrate::solver::{Gradient, Minimum, covariance_for_unit_noise, minimise_sums};
+use crate::calibrate::{BallProblem, EstimatedRadius, SolveError};
+use crate::geometry::Mat3;
 
 use super::pose_noise::{PoseNoise, marginalised};
+use super::variance_components::VarianceSpread;
 
 /// The start is near, so a few passes settle it.
 const MAX_PASSES: usize = 30;
@@ -15,51 +18,169 @@ const CONVERGED_MM: f64 = 1e-6;
 /// The first pass sees the offsets of the start, so the noise is estimated from the second on, and kept from this one so
 /// that the passes can settle.
 const LAST_NOISE_ESTIMATE: usize = 4;
+/// Steps of the search for the radius; its cost is a parabola nearly.
+const RADIUS_ITERATIONS: usize = 6;
+/// Differences by the radius are taken over this part of it: far above rounding, far below any curvature.
+const RADIUS_STEP_PART: f64 = 1e-4;
 
 /// Where the passes ended.
 #[derive(Clone, Debug)]
 pub(super) struct Settled {
-    /// The observations at the minimum, pose noise integrated out.
+    /// The observations at the minimum, the noise of each pose integrated out, by station.
     pub observations: Vec<CentreObservation>,
+    /// Covariance of what is common to each station, in the sensor frame, mm².
+    pub common_covariance: Vec<Mat3>,
     pub minimum: Minimum,
     /// The pose noise that the weights stand for.
     pub pose_noise: PoseNoise,
+    /// How well that noise is known.
+    pub spread: VarianceSpread,
+    /// The radius, where it was to be estimated.
+    pub radius: Option<EstimatedRadius>,
+    /// Change of the unknowns with the radius, a mm.
+    pub by_radius: Gradient,
 }
 
-/// Minimises what `linearised` makes of the data at a state, from a start.
+/// What the data say about the ball at a state if it has some radius (mm): by the points alone, ordered by station.
+pub(super) trait Linearise: Fn(&State, f64) -> Vec<CentreObservation> {}
+impl<F: Fn(&State, f64) -> Vec<CentreObservation>> Linearise for F {}
+
+/// Minimises what `linearised` makes of the data, from a start; the radius as well where the problem leaves it open.
 ///
 /// # Errors
 /// [`SolveError::Undetermined`] or [`SolveError::Diverged`], as the solver finds.
-pub(super) fn settle(
-    linearised: impl Fn(&State) -> Vec<CentreObservation>,
-    problem: &BallProblem,
+pub(super) fn settle(linearised: impl Linearise, problem: &BallProblem, start: State) -> Result<Settled, SolveError> {
+    let observations = merged(linearised(&start, problem.radius_mm));
+    let num_stations = observations.chunk_by(|a, b| a.station == b.station).count();
+    let noise = PoseNoise::of(problem, observations.len() > num_stations, num_stations);
+    let mut settled = settle_at(&linearised, problem.radius_mm, start, noise, true)?;
+    let mut radius_mm = problem.radius_mm;
+    if let Some(prior_std_mm) = problem.radius_std_mm.filter(|std| *std > 0.0) {
+        let found = estimated_radius(&linearised, problem.radius_mm, prior_std_mm, &settled)?;
+        radius_mm = found.radius_mm;
+        settled = settle_at(&linearised, radius_mm, settled.minimum.state, noise, true)?;
+        settled.radius = Some(found);
+    }
+    settled.by_radius = change_by_radius(&linearised, radius_mm, &settled)?;
+    Ok(settled)
+}
+
+fn settle_at(
+    linearised: &impl Linearise,
+    radius_mm: f64,
     start: State,
+    noise: PoseNoise,
+    is_noise_open: bool,
 ) -> Result<Settled, SolveError> {
-    let stated = PoseNoise::stated(&problem.noise, problem.mount);
-    let mut pose_noise = stated.unwrap_or(PoseNoise::NONE);
+    let mut noise = noise;
     let mut state = start;
+    let mut spread = VarianceSpread::known();
     let mut latest = None;
     for pass in 1..=MAX_PASSES {
-        let by_data = linearised(&state);
-        if stated.is_none() && (2..=LAST_NOISE_ESTIMATE).contains(&pass) {
-            pose_noise = PoseNoise::estimated(&by_data, &state);
+        let by_points = merged(linearised(&state, radius_mm));
+        if is_noise_open && (2..=LAST_NOISE_ESTIMATE).contains(&pass) {
+            spread = noise.estimate(&by_points, &state)?;
         }
-        let observations: Vec<CentreObservation> = by_data
-            .iter()
-            .map(|observation| marginalised(observation, &state, &pose_noise))
-            .collect::<Result<_, _>>()?;
-        let mut minimum = minimise(&observations.iter(), state)?;
+        let (observations, common_covariance) = weighted(&by_points, &state, &noise)?;
+        let mut minimum = minimise_sums(|state| sums_at(&observations, &common_covariance, state), state)?;
         let moved_mm = movement_mm(&state, &minimum.state);
         state = minimum.state;
-        let settled = moved_mm < SETTLED_MM && (stated.is_some() || pass > LAST_NOISE_ESTIMATE);
+        let settled = moved_mm < SETTLED_MM && (!is_noise_open || pass > LAST_NOISE_ESTIMATE);
         minimum.converged &= moved_mm < CONVERGED_MM;
         minimum.num_iterations = pass;
-        latest = Some(Settled { observations, minimum, pose_noise });
+        latest = Some(Settled {
+            observations,
+            common_covariance,
+            minimum,
+            pose_noise: noise,
+            spread: spread.clone(),
+            radius: None,
+            by_radius: Gradient::zeros(),
+        });
         if settled {
             break;
         }
     }
     latest.ok_or(SolveError::Diverged)
+}
+
+/// Captures at one and the same reported pose share its error, so they count as one.
+fn merged(observations: Vec<CentreObservation>) -> Vec<CentreObservation> {
+    let mut merged: Vec<CentreObservation> = Vec::with_capacity(observations.len());
+    for observation in observations {
+        match merged.last_mut() {
+            Some(last)
+                if last.station == observation.station && last.base_from_flange == observation.base_from_flange =>
+            {
+                last.information += observation.information;
+                last.pull += observation.pull;
+                last.constant += observation.constant;
+            }
+            _ => merged.push(observation),
+        }
+    }
+    merged
+}
+
+type WeightedObservations = (Vec<CentreObservation>, Vec<Mat3>);
+
+fn weighted(
+    by_points: &[CentreObservation],
+    state: &State,
+    noise: &PoseNoise,
+) -> Result<WeightedObservations, SolveError> {
+    let observations =
+        by_points.iter().map(|observation| marginalised(observation, state, noise)).collect::<Result<_, _>>()?;
+    let common_covariance = by_points
+        .chunk_by(|a, b| a.station == b.station)
+        .map(|run| noise.common_covariance(&run[0].base_from_flange, state))
+        .collect();
+    Ok((observations, common_covariance))
+}
+
+/// The radius that fits best, by Newton's method on the least cost over all other unknowns, with what is known beforehand.
+fn estimated_radius(
+    linearised: &impl Linearise,
+    given_mm: f64,
+    prior_std_mm: f64,
+    start: &Settled,
+) -> Result<EstimatedRadius, SolveError> {
+    let step_mm = RADIUS_STEP_PART * given_mm;
+    let prior_information = prior_std_mm.powi(-2);
+    let noise = start.pose_noise;
+    let mut radius_mm = given_mm;
+    let mut state = start.minimum.state;
+    let mut std_mm = prior_std_mm;
+    for _ in 0..RADIUS_ITERATIONS {
+        let mut cost_at = |radius_mm: f64| -> Result<f64, SolveError> {
+            let settled = settle_at(linearised, radius_mm, state, noise, false)?;
+            state = settled.minimum.state;
+            Ok(settled.minimum.cost)
+        };
+        let (behind, here, ahead) = (cost_at(radius_mm - step_mm)?, cost_at(radius_mm)?, cost_at(radius_mm + step_mm)?);
+        let gradient = (ahead - behind) / (4.0 * step_mm) + (radius_mm - given_mm) * prior_information;
+        let information = ((ahead - 2.0 * here + behind) / (2.0 * step_mm * step_mm)).max(0.0) + prior_information;
+        std_mm = information.sqrt().recip();
+        let change_mm = (-gradient / information).clamp(-0.2 * given_mm, 0.2 * given_mm);
+        radius_mm += change_mm;
+        if change_mm.abs() < 1e-3 * std_mm {
+            break;
+        }
+    }
+    Ok(EstimatedRadius { radius_mm, std_mm })
+}
+
+/// How the minimum follows the radius: what the data pull with if the ball is a little larger, against the information.
+fn change_by_radius(linearised: &impl Linearise, radius_mm: f64, settled: &Settled) -> Result<Gradient, SolveError> {
+    let step_mm = RADIUS_STEP_PART * radius_mm;
+    let state = &settled.minimum.state;
+    let gradient_at = |radius_mm: f64| {
+        let by_points = merged(linearised(state, radius_mm));
+        let (observations, common) = weighted(&by_points, state, &settled.pose_noise)?;
+        Ok(sums_at(&observations, &common, state).gradient)
+    };
+    let slope = (gradient_at(radius_mm + step_mm)? - gradient_at(radius_mm - step_mm)?) / (2.0 * step_mm);
+    Ok(covariance_for_unit_noise(&settled.minimum.hessian)? * slope)
 }
 
 fn movement_mm(before: &State, after: &State) -> f64 {

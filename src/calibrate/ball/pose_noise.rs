@@ -1,100 +1,115 @@
-//! The robot's noise moves all points of a profile together: it is common to them and must be weighed as such.
+//! The robot's noise moves all points of a profile together, and its lack of accuracy all profiles of a station: it is
+//! common to them and must be weighed as such.
 //!
 //! Per profile, with the information W from its points and the covariance S of the ball's centre by the pose, the centre
-//! is known with (W⁻¹ + S)⁻¹ = W (I + S W)⁻¹. In this form a profile that is blind in a direction needs no inverse.
+//! is known with (W⁻¹ + S)⁻¹ = W (I + S W)⁻¹. In this form a profile that is blind in a direction needs no inverse. What
+//! is common to a station is integrated out of its sums, see
+//! [`Normal::with_common_shift`](crate::calibrate::solver::Normal::with_common_shift).
 
 use crate::calibrate::observation::{CentreObservation, State};
-use crate::calibrate::{Mount, Noise, SolveError};
+use crate::calibrate::{BallProblem, Mount, NoiseModel, SolveError};
 use crate::geometry::so3::hat;
-use crate::geometry::{Mat3, Vec3};
+use crate::geometry::{Mat3, Rigid};
 
-/// Standard deviations of position (mm) and orientation (rad) about each axis.
+use super::variance_components::{Components, NUM_COMPONENTS, VarianceSpread};
+
+/// With fewer stations than this the error common to a station is taken as one of position alone.
+const MIN_STATIONS_FOR_COMMON_ORIENTATION: usize = 8;
+
+/// Variances of position (mm²) and orientation (rad²) about each axis: of every pose by itself, and common to a station.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PoseNoise {
-    pub position_std_mm: f64,
-    pub orientation_std_rad: f64,
+    variances: [f64; NUM_COMPONENTS],
+    is_estimated: [bool; NUM_COMPONENTS],
     /// Where the robot moves, which is what its orientation turns about.
     pub mount: Mount,
 }
 
 impl PoseNoise {
-    /// A perfect robot.
-    pub const NONE: Self = Self { position_std_mm: 0.0, orientation_std_rad: 0.0, mount: Mount::OnFlange };
-
-    /// The noise that the user states, if all of it is stated; half of it would stand for a robot perfect in the other.
-    pub fn stated(noise: &Noise, mount: Mount) -> Option<Self> {
-        Some(Self { position_std_mm: noise.position_std_mm?, orientation_std_rad: noise.orientation_std_rad?, mount })
+    /// As far as the problem states it. The rest is to be estimated; so is what the stations err by beyond what is stated,
+    /// as a robot's repeatability says nothing of its accuracy.
+    pub fn of(problem: &BallProblem, has_sweeps: bool, num_stations: usize) -> Self {
+        let (position, orientation) = (problem.noise.position_std_mm, problem.noise.orientation_std_rad);
+        let is_stated = position.is_some() && orientation.is_some();
+        // One pose a station: what is its own and what is the station's look the same.
+        let has_common = has_sweeps || is_stated;
+        Self {
+            variances: [position, orientation, None, None].map(|std| std.map_or(0.0, |std| std * std)),
+            is_estimated: [
+                position.is_none(),
+                orientation.is_none(),
+                has_common,
+                has_sweeps && num_stations >= MIN_STATIONS_FOR_COMMON_ORIENTATION,
+            ],
+            mount: problem.mount,
+        }
     }
 
-    /// The noise, as a position noise, for which the profiles' centres scatter as much as they are expected to: the
-    /// variance component by the method of moments.
-    pub fn estimated(observations: &[CentreObservation], state: &State) -> Self {
-        /// Arms do not repeat better than this, mm; below it the search may stop.
-        const LEAST_MM: f64 = 1e-6;
-        /// Worse than this is no noise, mm.
-        const MOST_MM: f64 = 30.0;
-        let noise = |position_std_mm: f64| Self { position_std_mm, ..Self::NONE };
-        // With S = τ² I every direction of a profile stands alone: eᵀ (W⁻¹ + S)⁻¹ e is Σ (vᵀ g)² / (λ + τ² λ²) over the
-        // eigenvectors v of W, with e = W⁻¹ g.
-        let directions: Vec<(f64, f64)> = observations
-            .iter()
-            .flat_map(|observation| {
-                let eigen = observation.information.symmetric_eigen();
-                let along = eigen.eigenvectors.transpose() * residual_pull(observation, state);
-                [0, 1, 2].map(|idx| (eigen.eigenvalues[idx], along[idx] * along[idx]))
-            })
-            .filter(|(eigenvalue, _)| *eigenvalue > 0.0)
-            .collect();
-        #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 profiles")]
-        let freedom = directions.len() as f64 - 9.0;
-        let excess = |std_mm: f64| {
-            let variance = std_mm * std_mm;
-            let chi_square: f64 = directions
-                .iter()
-                .map(|(eigenvalue, squared)| squared / (eigenvalue + variance * eigenvalue * eigenvalue))
-                .sum();
-            chi_square - freedom
-        };
-        if freedom <= 0.0 || excess(LEAST_MM) <= 0.0 {
-            return noise(0.0);
-        }
-        let (mut low, mut high) = (LEAST_MM.ln(), MOST_MM.ln());
-        // The sum falls with the noise: halve the interval until the figure is good to a per mille.
-        while high - low > 1e-3 {
-            let middle = 0.5 * (low + high);
-            if excess(middle.exp()) > 0.0 {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        noise((0.5 * (low + high)).exp())
+    /// Standard deviation of the position of each pose by itself, mm.
+    pub fn position_std_mm(&self) -> f64 {
+        self.variances[0].sqrt()
     }
 
-    /// Covariance of the ball's centre in the sensor frame by this noise at one pose, mm².
+    /// For the reader.
+    pub fn model(&self) -> NoiseModel {
+        let [position, orientation, station_position, station_orientation] = self.variances.map(f64::sqrt);
+        NoiseModel {
+            position_std_mm: position,
+            orientation_std_rad: orientation,
+            station_position_std_mm: station_position,
+            station_orientation_std_rad: station_orientation,
+            is_stated: !self.is_estimated[0] && !self.is_estimated[1],
+        }
+    }
+
+    /// Fits what is to be estimated to observations by points alone, linearised at `state` and ordered by station.
     ///
-    /// The orientation acts with the lever from the flange to the ball.
-    fn centre_covariance(&self, observation: &CentreObservation, state: &State) -> Mat3 {
-        let position = Mat3::identity() * (self.position_std_mm * self.position_std_mm);
-        let lever = match self.mount {
-            // exp(ω) at the flange turns what the sensor sees about the flange.
-            Mount::OnFlange => {
-                let ball_in_flange =
-                    observation.base_from_flange.inverse_transform_point(&state.ball_in_base.into()).coords;
-                let rotation = state.flange_from_sensor.rotation.to_rotation_matrix();
-                rotation.matrix().transpose() * hat(ball_in_flange)
-            }
-            // The poses are inverted: the ball is on the flange, at `ball_in_base`, and turns about its origin.
-            Mount::Fixed => {
-                let (_, sensor_from_base) = state.ball_in_sensor_and_rotation(&observation.base_from_flange);
-                sensor_from_base * hat(state.ball_in_base)
-            }
-        };
-        position + lever * lever.transpose() * (self.orientation_std_rad * self.orientation_std_rad)
+    /// # Errors
+    /// [`SolveError::Undetermined`] if they leave an unknown free.
+    pub fn estimate(
+        &mut self,
+        observations: &[CentreObservation],
+        state: &State,
+    ) -> Result<VarianceSpread, SolveError> {
+        let components = Components::new(observations, state, self, &self.is_estimated);
+        let (variances, spread) = components.fit(self.variances)?;
+        self.variances = variances;
+        Ok(spread)
+    }
+
+    /// Covariance of the ball's centre in the sensor frame by the noise of one pose, mm².
+    fn own_covariance(&self, base_from_flange: &Rigid, state: &State) -> Mat3 {
+        let [position, orientation, ..] = self.variances;
+        Mat3::identity() * position + lever_covariance(base_from_flange, state, self.mount) * orientation
+    }
+
+    /// Covariance of the ball's centre in the sensor frame by what is common to a station, mm².
+    pub fn common_covariance(&self, first_pose: &Rigid, state: &State) -> Mat3 {
+        let [.., position, orientation] = self.variances;
+        Mat3::identity() * position + lever_covariance(first_pose, state, self.mount) * orientation
     }
 }
 
-/// The same observation with the pose noise integrated out.
+/// Covariance of the ball's centre in the sensor frame by a unit variance of the orientation, which acts with the lever from
+/// the flange to the ball, mm².
+pub(super) fn lever_covariance(base_from_flange: &Rigid, state: &State, mount: Mount) -> Mat3 {
+    let lever = match mount {
+        // exp(ω) at the flange turns what the sensor sees about the flange.
+        Mount::OnFlange => {
+            let ball_in_flange = base_from_flange.inverse_transform_point(&state.ball_in_base.into()).coords;
+            let rotation = state.flange_from_sensor.rotation.to_rotation_matrix();
+            rotation.matrix().transpose() * hat(ball_in_flange)
+        }
+        // The poses are inverted: the ball is on the flange, at `ball_in_base`, and turns about its origin.
+        Mount::Fixed => {
+            let (_, sensor_from_base) = state.ball_in_sensor_and_rotation(base_from_flange);
+            sensor_from_base * hat(state.ball_in_base)
+        }
+    };
+    lever * lever.transpose()
+}
+
+/// The same observation with the noise of its own pose integrated out.
 ///
 /// # Errors
 /// [`SolveError::Diverged`] if the numbers are not finite.
@@ -103,45 +118,14 @@ pub(super) fn marginalised(
     state: &State,
     noise: &PoseNoise,
 ) -> Result<CentreObservation, SolveError> {
-    let covariance = noise.centre_covariance(observation, state);
+    let covariance = noise.own_covariance(&observation.base_from_flange, state);
     let damp = (Mat3::identity() + observation.information * covariance).try_inverse().ok_or(SolveError::Diverged)?;
     let information = damp * observation.information;
+    let pull = damp * observation.pull;
     Ok(CentreObservation {
         information: (information + information.transpose()) * 0.5,
-        pull: damp * observation.pull,
+        pull,
+        constant: observation.constant - pull.dot(&(covariance * observation.pull)),
         ..observation.clone()
     })
-}
-
-/// Half the negative gradient of an observation at the state.
-fn residual_pull(observation: &CentreObservation, state: &State) -> Vec3 {
-    let offset = state.ball_in_sensor(&observation.base_from_flange) - observation.centre_in_sensor;
-    observation.pull - observation.information * offset
-}
-
-/// By how much the stations scatter more than their weights explain, at least 1; `None` with nothing left over.
-///
-/// Errors common to a sweep show between stations only, so whole stations are the sample.
-pub(super) fn station_variance_factor(
-    observations: &[CentreObservation],
-    state: &State,
-    num_stations: usize,
-) -> Option<f64> {
-    let mut chi_square = 0.0;
-    for station in 0..num_stations {
-        let (mut information, mut pull) = (Mat3::zeros(), Vec3::zeros());
-        for observation in observations.iter().filter(|observation| observation.station == station) {
-            let rotation =
-                (observation.base_from_flange.rotation * state.flange_from_sensor.rotation).to_rotation_matrix();
-            information += rotation.matrix() * observation.information * rotation.matrix().transpose();
-            pull += rotation * residual_pull(observation, state);
-        }
-        let ridge = Mat3::identity() * (1e-12 * information.trace());
-        if let Some(factor) = (information + ridge).cholesky() {
-            chi_square += pull.dot(&factor.solve(&pull));
-        }
-    }
-    let freedom = (3 * num_stations).checked_sub(9).filter(|freedom| *freedom > 0)?;
-    #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 stations")]
-    Some((chi_square / freedom as f64).max(1.0))
 }

@@ -1,4 +1,4 @@
-//! All points of a profile reduced to nine sums: its residuals depend on the nine unknowns only through the ball's centre
+//! All points of a profile reduced to ten sums: its residuals depend on the nine unknowns only through the ball's centre
 //! in the sensor frame.
 
 use crate::fit::ArcFit;
@@ -12,6 +12,8 @@ pub(super) struct ProfileSums {
     pub information: Mat3,
     /// Σ u r: half the negative gradient of the cost by s.
     pub pull: Vec3,
+    /// Σ r².
+    pub cost: f64,
 }
 
 /// One pass over the points of a profile for a ball centred at `centre` in the sensor frame.
@@ -20,17 +22,28 @@ pub(super) fn profile_sums(arc: &ArcFit, centre: Vec3, ball_radius_mm: f64) -> P
     let sums = sum_over(&arc.inlier_x_mm, &arc.inlier_z_mm, |x, z| {
         terms(x - centre.x, z - centre.z, centre.y, ball_radius_mm)
     });
-    let [uu, uw, ww, u_inverse, w_inverse, inverse_squared, ur, wr, inverse_r] = sums;
+    let [uu, uw, ww, u_inverse, w_inverse, inverse_squared, ur, wr, inverse_r, cost] = sums;
     let y = -centre.y;
     let (uv, vw, vv, vr) = (y * u_inverse, y * w_inverse, y * y * inverse_squared, y * inverse_r);
-    ProfileSums { information: Mat3::new(uu, uv, uw, uv, vv, vw, uw, vw, ww), pull: Vec3::new(ur, vr, wr) }
+    ProfileSums { information: Mat3::new(uu, uv, uw, uv, vv, vw, uw, vw, ww), pull: Vec3::new(ur, vr, wr), cost }
 }
 
 #[inline]
-fn terms(dx: f64, dz: f64, y: f64, ball_radius_mm: f64) -> [f64; 9] {
+fn terms(dx: f64, dz: f64, y: f64, ball_radius_mm: f64) -> [f64; 10] {
     let squared = dx * dx + dz * dz + y * y;
     let inverse = 1.0 / squared.sqrt();
     let residual = squared * inverse - ball_radius_mm;
     let (u, w) = (dx * inverse, dz * inverse);
-    [u * u, u * w, w * w, u * inverse, w * inverse, inverse * inverse, u * residual, w * residual, inverse * residual]
+    [
+        u * u,
+        u * w,
+        w * w,
+        u * inverse,
+        w * inverse,
+        inverse * inverse,
+        u * residual,
+        w * residual,
+        inverse * residual,
+        residual * residual,
+    ]
 }

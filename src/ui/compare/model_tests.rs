@@ -77,8 +77,11 @@ fn solution(method: Method, shift_mm: f64, errors_mm: &[Vec3]) -> Solution {
         rotation_span_rad: 1.0,
         warnings: vec![Warning::FewStations { num_stations: 2, recommended: 8 }],
         num_iterations: 3,
+        noise: None,
+        radius: None,
         reduced: Reduced {
             observations: Vec::new(),
+            common_covariance: Vec::new(),
             num_stations: 2,
             state: State { flange_from_sensor: Rigid::identity(), ball_in_base: Vec3::zeros() },
             hessian: Hessian::identity(),

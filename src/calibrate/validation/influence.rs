@@ -1,0 +1,87 @@
+//! What each station means for the result: its residual against what it may be, and what leaving it out moves.
+
+use nalgebra::SMatrix;
+
+use crate::calibrate::Solution;
+use crate::calibrate::observation::{NUM_UNKNOWNS, State};
+use crate::calibrate::reduced::Reduced;
+use crate::calibrate::solver::{Hessian, covariance_for_unit_noise};
+use crate::geometry::so3::hat;
+use crate::geometry::{Mat3, Vec3, stats};
+
+use super::leave_one_out::minima_without_each;
+use super::workspace_point;
+
+/// What one station means for the result.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Influence {
+    /// The caller's index of the station.
+    pub station_idx: usize,
+    /// The user's name for it.
+    pub label: String,
+    /// Residual against the solution made without the station, over what its noise and that solution's uncertainty let one
+    /// expect: a root mean square over the three directions, so about 1 for a good station.
+    pub studentised_residual: f64,
+    /// Probability of so large a residual by chance, in this one station.
+    pub p_value: f64,
+    /// How far the workspace point moves when the station is left out, mm.
+    pub moves_workspace_point_mm: f64,
+}
+
+/// One entry a station; `None` where nothing can be left out.
+pub(super) fn influence(solution: &Solution) -> Option<Vec<Influence>> {
+    let reduced = &solution.reduced;
+    let reference_point = solution.uncertainty.as_ref()?.reference_point_in_sensor_mm;
+    let factor = reduced.variance_factor?;
+    let here = workspace_point(&reduced.state, reference_point);
+    minima_without_each(reduced)
+        .into_iter()
+        .zip(&solution.stations)
+        .enumerate()
+        .map(|(idx, (minimum, station))| {
+            let minimum = minimum?;
+            let others = covariance_for_unit_noise(&minimum.hessian).ok()?;
+            let chi_square = squared_residual(reduced, idx, &minimum.state, &others)? / factor;
+            Some(Influence {
+                station_idx: station.station_idx,
+                label: station.label.clone(),
+                studentised_residual: (chi_square / 3.0).sqrt(),
+                p_value: stats::chi_squared_p_value(chi_square, 3.0),
+                moves_workspace_point_mm: (workspace_point(&minimum.state, reference_point) - here).norm(),
+            })
+        })
+        .collect()
+}
+
+/// The station's ball against that of the others, squared, in the metric of what may be expected of it.
+///
+/// With the station's information G about the ball (in the base), its pull p and the covariance P of what the others
+/// predict, the difference d = G⁻¹ p has the covariance G⁻¹ + P: the square is pᵀ (I + P G)⁻¹ G⁻¹ p.
+fn squared_residual(reduced: &Reduced, station: usize, state: &State, others: &Hessian) -> Option<f64> {
+    let run = reduced.stations().nth(station)?;
+    let first = run.first()?;
+    let (centre, sensor_from_base) = state.ball_in_sensor_and_rotation(&first.base_from_flange);
+    let base_from_sensor = sensor_from_base.transpose();
+    let (mut information, mut pull) = (Mat3::zeros(), Vec3::zeros());
+    for observation in run {
+        let rotation = (observation.base_from_flange.rotation * state.flange_from_sensor.rotation).to_rotation_matrix();
+        information += rotation.matrix() * observation.information * rotation.matrix().transpose();
+        pull += rotation * observation.pull_at(state);
+    }
+    if let Some(common) = reduced.common_covariance.get(station) {
+        let in_base = base_from_sensor * common * sensor_from_base;
+        let damp = (Mat3::identity() + information * in_base).try_inverse()?;
+        information = damp * information;
+        pull = damp * pull;
+    }
+    let mut by_unknowns = SMatrix::<f64, 3, NUM_UNKNOWNS>::zeros();
+    by_unknowns.fixed_view_mut::<3, 3>(0, 0).copy_from(&(base_from_sensor * hat(centre)));
+    by_unknowns.fixed_view_mut::<3, 3>(0, 3).copy_from(&-base_from_sensor);
+    by_unknowns.fixed_view_mut::<3, 3>(0, 6).copy_from(&Mat3::identity());
+    let predicted = by_unknowns * others * by_unknowns.transpose();
+    // A direction that the station is blind in pulls with nothing, so a ridge far below the rest changes nothing.
+    let ridge = Mat3::identity() * (1e-12 * information.trace());
+    let difference = ((information + information.transpose()) * 0.5 + ridge).cholesky()?.solve(&pull);
+    let expected = (Mat3::identity() + predicted * information).try_inverse()?;
+    Some(pull.dot(&(expected * difference)).max(0.0))
+}
