@@ -5,8 +5,11 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, sync_channel};
 
-use handeye::app::{Command, NoticeKind, Workbench};
-use handeye::calibrate::{Method, Verdict, verdict::judge};
+use handeye::app::verdict::Reason;
+use handeye::app::{Command, NoticeKind, Workbench, verdict_with};
+use handeye::calibrate::{Method, Solution, Verdict, verdict::judge};
+use handeye::diagnose::{Diagnosis, Evidence, Fault, Finding, Remedy, Severity};
+use handeye::plan::Limits;
 use handeye::session;
 
 struct Bench {
@@ -32,10 +35,13 @@ impl Bench {
         }
     }
 
-    fn translation(&self) -> [f64; 3] {
+    fn solution(&self) -> &Solution {
         let results = self.workbench.results().expect("solved");
-        let solution = results.method(Method::BallBundle).expect("run").outcome.as_ref().expect("solved");
-        solution.flange_from_sensor.translation_mm().into()
+        results.method(Method::BallBundle).expect("run").outcome.as_ref().expect("solved")
+    }
+
+    fn translation(&self) -> [f64; 3] {
+        self.solution().flange_from_sensor.translation_mm().into()
     }
 }
 
@@ -48,10 +54,7 @@ fn leaving_a_station_out_solves_again_and_undo_brings_the_old_result_back() {
     let mut bench = Bench::new();
     bench.apply(Command::OpenSample(sample("one-bad-pose.json")));
     let before = bench.translation();
-    let verdict = |bench: &Bench| {
-        let results = bench.workbench.results().expect("solved");
-        judge(results.method(Method::BallBundle).expect("run").outcome.as_ref().expect("solved")).0
-    };
+    let verdict = |bench: &Bench| judge(bench.solution()).0;
     assert_eq!(verdict(&bench), Verdict::NotUsable);
     bench.apply(Command::SetStationEnabled { station_idx: 6, enabled: false });
     assert!(bench.workbench.results_are_current());
@@ -145,4 +148,111 @@ fn after_a_cancel_the_session_can_be_solved_again() {
     bench.apply(Command::CancelSolve);
     bench.apply(Command::Solve);
     assert!(bench.workbench.results_are_current());
+}
+
+#[test]
+fn diagnosis_and_plan_follow_the_results_and_stay_while_newer_ones_are_made() {
+    let mut bench = Bench::new();
+    bench.apply(Command::OpenSample(sample("clean-sweeps.json")));
+    let workbench = &bench.workbench;
+    assert!(workbench.current_diagnosis().is_some() && workbench.current_plan().is_some());
+    bench.workbench.apply(Command::SetStationEnabled { station_idx: 0, enabled: false });
+    let workbench = &bench.workbench;
+    assert!(workbench.is_busy());
+    assert!(workbench.current_diagnosis().is_none() && workbench.current_plan().is_none());
+    assert!(workbench.diagnosis().last().is_some() && workbench.plan().last().is_some(), "the last ones stay");
+    bench.apply(Command::Solve);
+    let workbench = &bench.workbench;
+    assert!(workbench.current_diagnosis().is_some() && workbench.current_plan().is_some());
+    bench.apply(Command::CloseDocument);
+    assert!(bench.workbench.diagnosis().last().is_none() && bench.workbench.plan().last().is_none());
+}
+
+#[test]
+fn after_a_cancel_the_session_can_be_diagnosed_again() {
+    let mut bench = Bench::new();
+    bench.apply(Command::OpenSample(sample("clean-sweeps.json")));
+    let found = bench.workbench.current_diagnosis().cloned().expect("diagnosed");
+    bench.workbench.apply(Command::SetStationEnabled { station_idx: 0, enabled: false });
+    bench.workbench.apply(Command::Undo);
+    while !bench.workbench.results_are_current() {
+        bench.woken.recv().expect("workers wake the bench");
+        bench.workbench.poll();
+    }
+    bench.apply(Command::CancelDiagnosis);
+    assert!(bench.workbench.current_diagnosis().is_none());
+    bench.apply(Command::Diagnose);
+    assert_eq!(bench.workbench.current_diagnosis(), Some(&found), "the same session, the same findings");
+}
+
+#[test]
+fn a_remedy_is_one_edit_that_can_be_undone() {
+    let mut bench = Bench::new();
+    bench.apply(Command::OpenSample(sample("one-bad-pose.json")));
+    let before = bench.translation();
+    bench.apply(Command::ApplyRemedy(Remedy::LeaveOut(vec![6])));
+    let document = bench.workbench.document().expect("open");
+    assert!(!document.session.stations[6].enabled);
+    assert_eq!(document.history.undo_label(), Some("leave out station 7"));
+    let revision = document.revision;
+    bench.apply(Command::ApplyRemedy(Remedy::LeaveOut(vec![6])));
+    assert_eq!(bench.workbench.document().expect("open").revision, revision, "nothing is left to be mended");
+    bench.apply(Command::Undo);
+    assert_eq!(bench.translation().map(f64::to_bits), before.map(f64::to_bits));
+}
+
+#[test]
+fn a_bootstrap_runs_on_request_and_is_out_of_date_after_an_edit() {
+    let mut bench = Bench::new();
+    bench.apply(Command::OpenSample(sample("clean-sweeps.json")));
+    assert!(bench.workbench.bootstrap().last().is_none(), "only on request");
+    bench.workbench.apply(Command::StartBootstrap { num_draws: 1_000_000 });
+    assert!(bench.workbench.is_busy() && bench.workbench.bootstrap().progress().is_some());
+    bench.apply(Command::CancelBootstrap);
+    assert!(bench.workbench.bootstrap().last().is_none());
+    bench.apply(Command::StartBootstrap { num_draws: 8 });
+    let revision = bench.workbench.bootstrap().last().expect("run").revision;
+    assert!(bench.workbench.is_current(revision));
+    bench.apply(Command::SetStationEnabled { station_idx: 0, enabled: false });
+    assert!(!bench.workbench.is_current(bench.workbench.bootstrap().last().expect("it stays").revision));
+}
+
+#[test]
+fn other_limits_give_another_plan() {
+    let mut bench = Bench::new();
+    bench.apply(Command::OpenSample(sample("clean-sweeps.json")));
+    let limits = Limits { max_tilt_deg: 6.0, max_spin_deg: 15.0, ..Limits::default() };
+    bench.apply(Command::SetPlanLimits(limits));
+    assert_eq!(bench.workbench.plan_limits(), &limits);
+    let plan = bench.workbench.current_plan().expect("planned");
+    // Rounding only.
+    let is_within = |tilt_deg: f64, spin_deg: f64| tilt_deg <= 6.0 + 1e-6 && spin_deg.abs() <= 15.0 + 1e-6;
+    assert!(plan.stations.iter().all(|station| is_within(station.tilt_deg, station.spin_deg)), "{plan:?}");
+    bench.apply(Command::OpenSample(sample("one-bad-pose.json")));
+    assert_eq!(bench.workbench.plan_limits(), &Limits::default(), "limits belong to their session");
+}
+
+#[test]
+fn findings_only_make_the_verdict_worse() {
+    let mut bench = Bench::new();
+    bench.apply(Command::OpenSample(sample("clean-sweeps.json")));
+    let solution = bench.solution();
+    let (by_figures, _) = judge(solution);
+    assert_eq!(by_figures, Verdict::Good);
+    assert_eq!(verdict_with(solution, None).0, by_figures);
+    for (severity, expected) in
+        [(Severity::Note, Verdict::Good), (Severity::Doubtful, Verdict::Usable), (Severity::Wrong, Verdict::NotUsable)]
+    {
+        let finding = Finding {
+            fault: Fault::HalvesDisagree { median_mm: 1.0, expected_mm: 0.1 },
+            severity,
+            explains: 1.0,
+            evidence: Evidence::default(),
+            remedy: None,
+        };
+        let diagnosis = Diagnosis { findings: vec![finding], readings: Vec::new(), validation: None };
+        let (verdict, reason) = verdict_with(solution, Some(&diagnosis));
+        assert_eq!(verdict, expected);
+        assert_eq!(matches!(reason, Reason::Finding(_)), severity != Severity::Note);
+    }
 }
