@@ -1,10 +1,219 @@
 //! What the poses alone show: too little rotation, one axis, twins, travel and steps.
 
+use crate::calibrate::ball::{MIN_STATIONS, ONE_AXIS_RATIO, RECOMMENDED_SPAN_DEG};
+use crate::calibrate::rotation_start::{PoseGeometry, rotation_span};
+use crate::calibrate::{BallProblem, Method, Mount, Reading, SolveError, Station, best_available, solution_of};
+use crate::geometry::so3::{self, nearest_rotation};
+use crate::geometry::{Mat3, Rigid, Vec3, stats};
+use crate::session::check::{STEP_TOLERANCE_MM, TWIN_ANGLE_DEG, TWIN_DISTANCE_MM};
+
 use super::Case;
-use super::finding::Finding;
+use super::finding::{Evidence, Fault, Finding, Plot, Severity};
+
+/// Travel may be off the laser's normal by this, degrees, before it is worth a finding.
+const OFF_NORMAL_DEG: f64 = 2.0;
+/// A deviation counts from so many times what the noise makes of it.
+const AT_STDS: f64 = 5.0;
 
 /// What there is to find.
 #[must_use]
-pub fn examine(_case: Case<'_>) -> Vec<Finding> {
-    Vec::new()
+pub fn examine(case: Case<'_>) -> Vec<Finding> {
+    let mut findings: Vec<Finding> = rotation(case).into_iter().collect();
+    findings.extend(twin_poses(case));
+    findings.extend(travel_off_normal(case));
+    findings.extend(step_differs_from_pose(case.problem));
+    findings
+}
+
+fn finding(fault: Fault, severity: Severity, plot: Option<Plot>) -> Finding {
+    Finding { fault, severity, explains: 1.0, evidence: Evidence { residual_mm: None, plot }, remedy: None }
+}
+
+/// The poses of the stations that show something, or of all where too few do.
+fn first_poses(problem: &BallProblem) -> Vec<Rigid> {
+    let first = |station: &Station| station.captures.first().map(|capture| *capture.base_from_flange.rigid());
+    let shows =
+        |station: &&Station| station.captures.iter().any(|capture| !matches!(capture.reading, Reading::Refused(_)));
+    let usable: Vec<Rigid> = problem.stations.iter().filter(shows).filter_map(first).collect();
+    if usable.len() >= MIN_STATIONS { usable } else { problem.stations.iter().filter_map(first).collect() }
+}
+
+fn rotation(case: Case<'_>) -> Option<Finding> {
+    let poses = first_poses(case.problem);
+    if poses.len() < 2 {
+        return None;
+    }
+    let span_deg = rotation_span(&poses).to_degrees();
+    let principal = PrincipalRotations::new(&poses);
+    let plot = |in_flange: Vec3| {
+        let rotations_deg = principal.as_ref().map_or([0.0; 3], |principal| principal.rms_deg);
+        Some(Plot::Direction { in_flange, rotations_deg })
+    };
+    match PoseGeometry::new(&poses) {
+        Err(SolveError::NoRotation { span_deg }) => {
+            Some(finding(Fault::NoRotation { span_deg }, Severity::Wrong, None))
+        }
+        Err(SolveError::RotationsAboutOneAxis { axis_x, axis_y, axis_z }) => {
+            let axis_in_flange = Vec3::new(axis_x, axis_y, axis_z);
+            Some(finding(Fault::OneAxis { axis_in_flange, ratio: None }, Severity::Wrong, plot(axis_in_flange)))
+        }
+        Err(_) => None,
+        Ok(geometry) => {
+            let [least, _, most] = geometry.axis_movements;
+            let ratio = (most / least).sqrt();
+            let axis_in_flange = geometry.common_axis_in_flange;
+            if ratio > ONE_AXIS_RATIO {
+                let fault = Fault::OneAxis { axis_in_flange, ratio: Some(ratio) };
+                return Some(finding(fault, Severity::Doubtful, plot(axis_in_flange)));
+            }
+            let weakest = best_available(case.results)
+                .and_then(|solution| solution.uncertainty.as_ref())
+                .map(crate::calibrate::Uncertainty::weakest_direction);
+            let in_flange = weakest.map_or(axis_in_flange, |(direction, _)| direction);
+            let fault = Fault::LittleRotation { span_deg, recommended_deg: RECOMMENDED_SPAN_DEG, weakest };
+            (span_deg < RECOMMENDED_SPAN_DEG).then(|| finding(fault, Severity::Doubtful, plot(in_flange)))
+        }
+    }
+}
+
+/// How far the orientations turn from their mean.
+struct PrincipalRotations {
+    /// RMS about the principal axes, least first, degrees.
+    rms_deg: [f64; 3],
+}
+
+impl PrincipalRotations {
+    fn new(poses: &[Rigid]) -> Option<Self> {
+        let sum: Mat3 = poses.iter().map(|pose| *pose.rotation.to_rotation_matrix().matrix()).sum();
+        let mean_inverse = nearest_rotation(&sum)?.inverse();
+        let spread: Mat3 = poses
+            .iter()
+            .map(|pose| {
+                let turn = so3::log(&(mean_inverse * pose.rotation));
+                turn * turn.transpose()
+            })
+            .sum();
+        #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 stations")]
+        let count = poses.len() as f64;
+        let mut squares: Vec<f64> = (spread / count).symmetric_eigenvalues().iter().copied().collect();
+        squares.sort_by(f64::total_cmp);
+        Some(Self { rms_deg: [0, 1, 2].map(|idx| squares[idx].max(0.0).sqrt().to_degrees()) })
+    }
+}
+
+/// Every station that stands where an earlier one stood, once.
+fn twin_poses(case: Case<'_>) -> Vec<Finding> {
+    let poses: Vec<(usize, Rigid)> = case
+        .session
+        .stations
+        .iter()
+        .enumerate()
+        .filter(|(_, station)| station.enabled)
+        .filter_map(|(idx, station)| Some((idx, *station.captures.first()?.base_from_flange.rigid())))
+        .collect();
+    let twins: Vec<Fault> = poses
+        .iter()
+        .enumerate()
+        .filter_map(|(at, (idx, pose))| {
+            poses[..at].iter().find_map(|(earlier_idx, earlier)| {
+                let distance_mm = (pose.translation.vector - earlier.translation.vector).norm();
+                let angle_deg = pose.rotation.angle_to(&earlier.rotation).to_degrees();
+                (distance_mm < TWIN_DISTANCE_MM && angle_deg < TWIN_ANGLE_DEG).then_some(Fault::TwinPoses {
+                    station_idxs: [*earlier_idx, *idx],
+                    distance_mm,
+                    angle_deg,
+                })
+            })
+        })
+        .collect();
+    let severity = if poses.len() < MIN_STATIONS + twins.len() { Severity::Wrong } else { Severity::Note };
+    twins.into_iter().map(|fault| finding(fault, severity, None)).collect()
+}
+
+fn travel_off_normal(case: Case<'_>) -> Option<Finding> {
+    let solution = solution_of(case.results, Method::BallMaxArc)?;
+    let (station_idx, angle_deg) = solution
+        .stations
+        .iter()
+        .filter_map(|station| {
+            let sweep = station.sweep.as_ref()?;
+            let travels = || sweep.points.iter().map(|point| point.travel_mm);
+            let extent_mm = travels().fold(f64::NEG_INFINITY, f64::max) - travels().fold(f64::INFINITY, f64::min);
+            // A short travel points anywhere within the noise of its ends.
+            let noise_deg = (solution.scatter.rms_mm / extent_mm).to_degrees();
+            let angle_deg = sweep.travel_off_normal_rad.to_degrees();
+            (angle_deg > OFF_NORMAL_DEG.max(AT_STDS * noise_deg)).then_some((station.station_idx, angle_deg))
+        })
+        .max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let published_only = best_available(case.results).is_some_and(|best| best.method == Method::BallMaxArcStep);
+    let severity = if published_only { Severity::Doubtful } else { Severity::Note };
+    Some(finding(Fault::TravelOffNormal { station_idx, angle_deg }, severity, None))
+}
+
+/// Commanded travel and travel by the poses, from the first capture of a station, mm.
+struct Travel {
+    station_idx: usize,
+    commanded_mm: f64,
+    moved_mm: f64,
+}
+
+fn travels(problem: &BallProblem) -> Vec<Travel> {
+    problem.stations.iter().flat_map(|station| station_travels(station, problem.mount)).collect()
+}
+
+fn station_travels(station: &Station, mount: Mount) -> Vec<Travel> {
+    let position = |pose: &Rigid| match mount {
+        Mount::OnFlange => pose.translation.vector,
+        Mount::Fixed => pose.inverse().translation.vector,
+    };
+    let Some(first) = station.captures.first().map(|capture| position(capture.base_from_flange.rigid())) else {
+        return Vec::new();
+    };
+    let moves: Vec<(f64, Vec3)> = station
+        .captures
+        .iter()
+        .skip(1)
+        .filter_map(|capture| Some((capture.commanded_travel_mm?, position(capture.base_from_flange.rigid()) - first)))
+        .collect();
+    // Along the station's own direction, as the distances themselves grow by the noise across it.
+    let direction = moves.iter().map(|(commanded, moved)| moved * *commanded).sum::<Vec3>();
+    let direction = direction.try_normalize(1e-9).unwrap_or_else(Vec3::zeros);
+    let travel = |(commanded_mm, moved): (f64, Vec3)| Travel {
+        station_idx: station.idx,
+        commanded_mm,
+        moved_mm: direction.dot(&moved),
+    };
+    moves.into_iter().map(travel).collect()
+}
+
+fn step_differs_from_pose(problem: &BallProblem) -> Option<Finding> {
+    let travels = travels(problem);
+    let squares: f64 = travels.iter().map(|travel| travel.commanded_mm.powi(2)).sum();
+    let ratio = travels.iter().map(|travel| travel.commanded_mm * travel.moved_mm).sum::<f64>() / squares;
+    if !ratio.is_finite() {
+        return None;
+    }
+    let difference = |travel: &Travel| (travel.moved_mm - travel.commanded_mm).abs();
+    let worst = travels.iter().max_by(|a, b| difference(a).total_cmp(&difference(b)))?;
+    let mut about_line: Vec<f64> = travels.iter().map(|travel| travel.moved_mm - ratio * travel.commanded_mm).collect();
+    let noise_mm = stats::robust_std_about_zero(&mut about_line);
+    let mut steps: Vec<f64> = step_lengths(problem);
+    let step_mm = stats::median(&mut steps);
+    // A tenth of a step is what the check of a session lets pass as well.
+    let tolerance_mm = STEP_TOLERANCE_MM.max(0.1 * step_mm).max(AT_STDS * noise_mm);
+    let (station_idx, difference_mm) = (worst.station_idx, difference(worst));
+    (difference_mm > tolerance_mm).then(|| {
+        let steps = travels.iter().map(|travel| [travel.commanded_mm, travel.moved_mm]).collect();
+        let fault = Fault::StepDiffersFromPose { station_idx, ratio, difference_mm };
+        finding(fault, Severity::Doubtful, Some(Plot::Steps(steps)))
+    })
+}
+
+fn step_lengths(problem: &BallProblem) -> Vec<f64> {
+    problem
+        .stations
+        .iter()
+        .flat_map(|station| station.captures.windows(2))
+        .filter_map(|pair| Some((pair[1].commanded_travel_mm? - pair[0].commanded_travel_mm?).abs()))
+        .collect()
 }

@@ -8,6 +8,7 @@ pub mod convention;
 pub mod finding;
 pub mod geometry;
 pub mod hypotheses;
+mod model;
 pub mod remedy;
 pub mod stations;
 
