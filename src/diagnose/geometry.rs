@@ -2,13 +2,16 @@
 
 use crate::calibrate::ball::{MIN_STATIONS, ONE_AXIS_RATIO, RECOMMENDED_SPAN_DEG};
 use crate::calibrate::rotation_start::{PoseGeometry, rotation_span};
-use crate::calibrate::{BallProblem, Method, Mount, Reading, SolveError, Station, best_available, solution_of};
+use crate::calibrate::{
+    BallProblem, Capture, Method, Mount, Reading, SolveError, Station, best_available, solution_of,
+};
 use crate::geometry::so3::{self, nearest_rotation};
 use crate::geometry::{Mat3, Rigid, Vec3, stats};
-use crate::session::check::{STEP_TOLERANCE_MM, TWIN_ANGLE_DEG, TWIN_DISTANCE_MM};
+use crate::session::check::{STEP_TOLERANCE_MM, STEP_TOLERANCE_RATIO, TWIN_ANGLE_DEG, TWIN_DISTANCE_MM};
 
 use super::Case;
 use super::finding::{Evidence, Fault, Finding, Plot, Severity};
+use super::model::FAR_OFF_PART;
 
 /// Travel may be off the laser's normal by this, degrees, before it is worth a finding.
 const OFF_NORMAL_DEG: f64 = 2.0;
@@ -132,15 +135,19 @@ fn twin_poses(case: Case<'_>) -> Vec<Finding> {
 
 fn travel_off_normal(case: Case<'_>) -> Option<Finding> {
     let solution = solution_of(case.results, Method::BallMaxArc)?;
+    if solution.scatter.rms_mm > FAR_OFF_PART * case.problem.radius_mm {
+        // The laser's normal is that of a solution which says nothing.
+        return None;
+    }
+    let noise_mm = across_travel_std_mm(case.problem);
     let (station_idx, angle_deg) = solution
         .stations
         .iter()
         .filter_map(|station| {
             let sweep = station.sweep.as_ref()?;
-            let travels = || sweep.points.iter().map(|point| point.travel_mm);
-            let extent_mm = travels().fold(f64::NEG_INFINITY, f64::max) - travels().fold(f64::INFINITY, f64::min);
-            // A short travel points anywhere within the noise of its ends.
-            let noise_deg = (solution.scatter.rms_mm / extent_mm).to_degrees();
+            let extent_mm = stats::max(sweep.points.iter().map(|point| point.travel_mm.abs()));
+            // The direction is that of a line through the first capture, whose noise turns it most.
+            let noise_deg = (1.5 * noise_mm / extent_mm).to_degrees();
             let angle_deg = sweep.travel_off_normal_rad.to_degrees();
             (angle_deg > OFF_NORMAL_DEG.max(AT_STDS * noise_deg)).then_some((station.station_idx, angle_deg))
         })
@@ -148,6 +155,31 @@ fn travel_off_normal(case: Case<'_>) -> Option<Finding> {
     let published_only = best_available(case.results).is_some_and(|best| best.method == Method::BallMaxArcStep);
     let severity = if published_only { Severity::Doubtful } else { Severity::Note };
     Some(finding(Fault::TravelOffNormal { station_idx, angle_deg }, severity, None))
+}
+
+/// Standard deviation of the robot's positions across the straight lines of the sweeps, a coordinate, mm; 0 without any.
+fn across_travel_std_mm(problem: &BallProblem) -> f64 {
+    let (mut squares, mut freedom) = (0.0, 0.0);
+    for station in problem.stations.iter().filter(|station| station.captures.len() > 2) {
+        let positions: Vec<Vec3> = station.captures.iter().map(|capture| position(capture, problem.mount)).collect();
+        #[expect(clippy::cast_precision_loss, reason = "a sweep has few steps")]
+        let count = positions.len() as f64;
+        let mean = positions.iter().sum::<Vec3>() / count;
+        let spread: Mat3 = positions.iter().map(|at| (at - mean) * (at - mean).transpose()).sum();
+        let eigenvalues = spread.symmetric_eigenvalues();
+        squares += eigenvalues.sum() - eigenvalues.max();
+        freedom += 2.0 * (count - 2.0);
+    }
+    if freedom > 0.0 { (squares / freedom).max(0.0).sqrt() } else { 0.0 }
+}
+
+/// Where the robot is in its base.
+fn position(capture: &Capture, mount: Mount) -> Vec3 {
+    let pose = capture.base_from_flange.rigid();
+    match mount {
+        Mount::OnFlange => pose.translation.vector,
+        Mount::Fixed => pose.inverse().translation.vector,
+    }
 }
 
 /// Commanded travel and travel by the poses, from the first capture of a station, mm.
@@ -162,18 +194,14 @@ fn travels(problem: &BallProblem) -> Vec<Travel> {
 }
 
 fn station_travels(station: &Station, mount: Mount) -> Vec<Travel> {
-    let position = |pose: &Rigid| match mount {
-        Mount::OnFlange => pose.translation.vector,
-        Mount::Fixed => pose.inverse().translation.vector,
-    };
-    let Some(first) = station.captures.first().map(|capture| position(capture.base_from_flange.rigid())) else {
+    let Some(first) = station.captures.first().map(|capture| position(capture, mount)) else {
         return Vec::new();
     };
     let moves: Vec<(f64, Vec3)> = station
         .captures
         .iter()
         .skip(1)
-        .filter_map(|capture| Some((capture.commanded_travel_mm?, position(capture.base_from_flange.rigid()) - first)))
+        .filter_map(|capture| Some((capture.commanded_travel_mm?, position(capture, mount) - first)))
         .collect();
     // Along the station's own direction, as the distances themselves grow by the noise across it.
     let direction = moves.iter().map(|(commanded, moved)| moved * *commanded).sum::<Vec3>();
@@ -199,8 +227,7 @@ fn step_differs_from_pose(problem: &BallProblem) -> Option<Finding> {
     let noise_mm = stats::robust_std_about_zero(&mut about_line);
     let mut steps: Vec<f64> = step_lengths(problem);
     let step_mm = stats::median(&mut steps);
-    // A tenth of a step is what the check of a session lets pass as well.
-    let tolerance_mm = STEP_TOLERANCE_MM.max(0.1 * step_mm).max(AT_STDS * noise_mm);
+    let tolerance_mm = STEP_TOLERANCE_MM.max(STEP_TOLERANCE_RATIO * step_mm).max(AT_STDS * noise_mm);
     let (station_idx, difference_mm) = (worst.station_idx, difference(worst));
     (difference_mm > tolerance_mm).then(|| {
         let steps = travels.iter().map(|travel| [travel.commanded_mm, travel.moved_mm]).collect();

@@ -35,6 +35,9 @@ const COST_SETTLED: f64 = 1e-7;
 /// No robot and no profiler is better than this, mm: it keeps exact data weighable.
 const LEAST_STD_MM: f64 = 1e-6;
 
+/// A residual above this part of the radius is nothing near the truth, whatever else fits worse: 0.3 mm on a ball of 15 mm.
+pub(super) const FAR_OFF_PART: f64 = 0.02;
+
 /// What may be different from what the session says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Extension {

@@ -11,7 +11,7 @@ use crate::calibrate::best_available;
 
 use super::Case;
 use super::finding::Finding;
-use super::model::{Extension, Fit, Model};
+use super::model::{Extension, FAR_OFF_PART, Fit, Model};
 
 /// How decisive the evidence (minus twice the logarithm of the likelihood ratio) has to be: by chance it is reached once in
 /// some ten thousand sessions, and stations are never quite the independent samples that this supposes.
@@ -56,8 +56,15 @@ impl<'a> Solved<'a> {
     }
 
     fn judged(&self, extension: Extension, fit: Fit) -> Option<Tried> {
+        if self.is_far_off(&fit) {
+            return None;
+        }
         let evidence = self.model.evidence(&fit, &self.plain)?;
         is_decisive(evidence, extension.num_extra(self.model.mount())).then_some(Tried { extension, fit, evidence })
+    }
+
+    fn is_far_off(&self, fit: &Fit) -> bool {
+        fit.rms_mm > FAR_OFF_PART * self.plain.unknowns.radius_mm
     }
 
     /// RMS residual as given and with the extension.
@@ -85,9 +92,11 @@ pub fn examine(case: Case<'_>) -> Vec<Finding> {
         return findings;
     };
     findings.extend(sides::examine(&solved));
-    // One thing at a time: what is wrong with the ball's size may look like a motion, and the other way round.
+    // One thing at a time: what is wrong with the ball's size may look like a motion, and the other way round. A size that
+    // turns nonsense into a fit needs no rival.
     let size = size::examine(&solved);
-    let motion = motion::examine(&solved);
+    let is_settled = size.is_some() && solved.is_far_off(&solved.plain);
+    let motion = if is_settled { None } else { motion::examine(&solved) };
     findings.extend([size, motion].into_iter().flatten().max_by(|a, b| a.explains.total_cmp(&b.explains)));
     findings
 }

@@ -16,8 +16,6 @@ const LEAST_DRIFT_MM: f64 = 0.1;
 const LEAST_FRAME_MM: f64 = 0.3;
 /// Nothing is said of a motion below this many standard deviations.
 const LEAST_STDS: f64 = 4.0;
-/// A residual above this part of the radius: the solution as given is no start for anything near the truth.
-const FAR_OFF_PART: f64 = 0.02;
 /// A frame of its own needs as many stations as a calibration.
 const MIN_STATIONS_EACH: usize = crate::calibrate::ball::MIN_STATIONS;
 
@@ -36,7 +34,7 @@ pub(super) fn examine(solved: &Solved<'_>) -> Option<Finding> {
 fn second_frame(solved: &Solved<'_>) -> Option<Tried> {
     let used: Vec<usize> = solved.model.used_stations().collect();
     let last = used.len().checked_sub(MIN_STATIONS_EACH)?;
-    let is_far_off = solved.plain.rms_mm > FAR_OFF_PART * solved.plain.unknowns.radius_mm;
+    let is_far_off = solved.is_far_off(&solved.plain);
     let scanned = used.get(MIN_STATIONS_EACH..=last)?.iter().flat_map(|from| {
         let starts = [Some(solved.plain.unknowns), is_far_off.then(|| from_two_parts(solved, *from)).flatten()];
         starts.into_iter().flatten().filter_map(move |start| {

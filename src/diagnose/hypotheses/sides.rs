@@ -105,8 +105,8 @@ fn severity(solved: &Solved<'_>, wrong: &[(usize, Side)]) -> Severity {
     if is_right { Severity::Doubtful } else { Severity::Wrong }
 }
 
-/// Seen from a sensor's origin a ball bulges towards it; where it bulges away, z is a height instead of a distance, which
-/// some sensors do report.
+/// Seen from a sensor's origin a ball bulges towards it. Where it bulges away, z is a height instead of a distance; some
+/// sensors do report that, and the calibration holds for whatever they report.
 pub(super) fn bulges_away(case: Case<'_>) -> Option<Finding> {
     arcs_bulge_away(case.problem).then_some(Finding {
         fault: Fault::MirroredAxis { axis: Axis::Z },
@@ -117,8 +117,8 @@ pub(super) fn bulges_away(case: Case<'_>) -> Option<Finding> {
     })
 }
 
-/// Whether all arcs bulge away from z = 0 and are further from it than a ball's diameter: nearer, the origin may well be
-/// in the middle of the range.
+/// Whether all arcs bulge towards larger z at positive z, as heights do, further from z = 0 than a ball's diameter: nearer,
+/// the origin may well be in the middle of the range.
 fn arcs_bulge_away(problem: &BallProblem) -> bool {
     let mut arcs = problem
         .stations
@@ -134,7 +134,7 @@ fn arcs_bulge_away(problem: &BallProblem) -> bool {
             #[expect(clippy::cast_precision_loss, reason = "a profile has far fewer than 2^52 points")]
             let mean_z_mm = arc.inlier_z_mm.iter().sum::<f64>() / arc.num_inliers() as f64;
             let centre_z_mm = arc.circle.z_mm;
-            (mean_z_mm - centre_z_mm) * centre_z_mm > 0.0 && centre_z_mm.abs() > 2.0 * problem.radius_mm
+            mean_z_mm > centre_z_mm && centre_z_mm > 2.0 * problem.radius_mm
         })
 }
 
