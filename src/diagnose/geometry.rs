@@ -244,3 +244,131 @@ fn step_lengths(problem: &BallProblem) -> Vec<f64> {
         .filter_map(|pair| Some((pair[1].commanded_travel_mm? - pair[0].commanded_travel_mm?).abs()))
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibrate::solve_all;
+    use crate::session::{Session, ball_problem, measure};
+    use crate::simulate::{self, SimulationOptions, simulate};
+    use crate::watch::Unwatched;
+
+    fn options(mount: Mount) -> SimulationOptions {
+        SimulationOptions {
+            seed: 5,
+            mount,
+            num_steps: 9,
+            step_mm: 1.8,
+            num_points: 200,
+            ..SimulationOptions::default()
+        }
+    }
+
+    #[expect(clippy::expect_used, reason = "a session that cannot be simulated must fail the test")]
+    fn found(session: &Session, methods: &[Method]) -> Vec<Finding> {
+        let measured = measure(session, None, &mut Unwatched).expect("not cancelled");
+        let problem = ball_problem(session, &measured).expect("a ball");
+        let results = solve_all(&problem, methods, &mut Unwatched).expect("not cancelled");
+        examine(Case { session, problem: &problem, results: &results })
+    }
+
+    #[track_caller]
+    fn only_finding(options: &SimulationOptions, methods: &[Method]) -> Finding {
+        let mut findings = found(&simulate(options), methods);
+        assert_eq!(findings.len(), 1, "{findings:#?} in {options:?}");
+        findings.remove(0)
+    }
+
+    fn with_fault(fault: simulate::Fault) -> impl Iterator<Item = SimulationOptions> {
+        [Mount::OnFlange, Mount::Fixed]
+            .into_iter()
+            .map(move |mount| SimulationOptions { fault: Some(fault), ..options(mount) })
+    }
+
+    #[test]
+    fn clean_sessions_are_silent() {
+        for mount in [Mount::OnFlange, Mount::Fixed] {
+            let options = options(mount);
+            let noisy = SimulationOptions { position_std_mm: 0.2, orientation_std_deg: 0.05, ..options.clone() };
+            let short = SimulationOptions { num_steps: 4, step_mm: 0.3, ..noisy.clone() };
+            for options in [options, noisy, short] {
+                assert_eq!(found(&simulate(&options), &[Method::BallMaxArc]), [], "{options:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn poor_rotations_are_found_from_the_poses_alone() {
+        for options in with_fault(simulate::Fault::NoRotation) {
+            let finding = only_finding(&options, &[]);
+            assert!(matches!(finding.fault, Fault::NoRotation { span_deg } if span_deg < 0.1), "{finding:?}");
+            assert_eq!(finding.severity, Severity::Wrong);
+        }
+        for options in with_fault(simulate::Fault::LittleRotation) {
+            let finding = only_finding(&options, &[]);
+            assert!(matches!(finding.fault, Fault::LittleRotation { span_deg, weakest: None, .. } if span_deg < 20.0));
+            let finding = only_finding(&options, &[Method::BallMaxArc]);
+            let Fault::LittleRotation { weakest: Some((direction, std_mm)), .. } = finding.fault else {
+                panic!("{finding:?}")
+            };
+            assert!((direction.norm() - 1.0).abs() < 1e-9 && std_mm > 0.0);
+        }
+    }
+
+    #[test]
+    fn rotations_about_one_axis_show_the_axis() {
+        for fault_options in with_fault(simulate::Fault::OneAxis) {
+            let finding = only_finding(&fault_options, &[]);
+            let Fault::OneAxis { axis_in_flange, ratio: None } = finding.fault else { panic!("{finding:?}") };
+            // The stations turn about the world's vertical, which is how the sensor looks.
+            let upright = simulate(&SimulationOptions { num_stations: 1, ..options(fault_options.mount) });
+            let pose = *upright.stations[0].captures[0].base_from_flange.rigid();
+            let vertical_in_flange = match fault_options.mount {
+                Mount::OnFlange => pose.rotation.inverse() * Vec3::z(),
+                Mount::Fixed => pose.rotation * Vec3::z(),
+            };
+            assert!(axis_in_flange.cross(&vertical_in_flange).norm() < 1e-3, "{axis_in_flange} {vertical_in_flange}");
+            let Some(Plot::Direction { rotations_deg, .. }) = finding.evidence.plot else { panic!("{finding:?}") };
+            assert!(rotations_deg[1] < 0.1 && rotations_deg[2] > 20.0, "{rotations_deg:?}");
+        }
+        let nearly = SimulationOptions { tilt_deg: 2.0, ..options(Mount::OnFlange) };
+        let finding = only_finding(&nearly, &[]);
+        assert!(matches!(finding.fault, Fault::OneAxis { ratio: Some(ratio), .. } if ratio > 8.0), "{finding:?}");
+        assert_eq!(finding.severity, Severity::Doubtful);
+    }
+
+    #[test]
+    fn twins_are_a_note_until_too_few_stations_are_left() {
+        for options in with_fault(simulate::Fault::TwinPoses) {
+            let finding = only_finding(&options, &[]);
+            let Fault::TwinPoses { station_idxs: [first, second], distance_mm, .. } = finding.fault else {
+                panic!("{finding:?}")
+            };
+            assert!(first < second && distance_mm < TWIN_DISTANCE_MM && finding.severity == Severity::Note);
+            let few = SimulationOptions { num_stations: 4, tilt_deg: 25.0, ..options };
+            assert_eq!(only_finding(&few, &[]).severity, Severity::Wrong);
+        }
+    }
+
+    #[test]
+    fn travel_off_the_normal_shows_its_angle() {
+        for options in with_fault(simulate::Fault::TravelOffNormal) {
+            let finding = only_finding(&options, &[Method::BallMaxArc]);
+            let Fault::TravelOffNormal { angle_deg, .. } = finding.fault else { panic!("{finding:?}") };
+            // The largest of ten, each off by a tenth of a degree.
+            assert!((angle_deg - 5.0).abs() < 0.5, "{angle_deg}");
+        }
+    }
+
+    #[test]
+    fn steps_that_the_robot_did_not_make_are_found() {
+        for options in with_fault(simulate::Fault::StepDiffersFromPose) {
+            let finding = only_finding(&options, &[]);
+            let Fault::StepDiffersFromPose { ratio, difference_mm, .. } = finding.fault else { panic!("{finding:?}") };
+            // The file's steps are 1.1 times the robot's, over a sweep of 8 × 1.8 mm.
+            assert!((ratio - 1.0 / 1.1).abs() < 0.005 && (difference_mm - 1.44).abs() < 0.2, "{finding:?}");
+            let Some(Plot::Steps(steps)) = &finding.evidence.plot else { panic!("{finding:?}") };
+            assert_eq!(steps.len(), 10 * 8);
+        }
+    }
+}
