@@ -264,7 +264,6 @@ mod tests {
         }
     }
 
-    #[expect(clippy::expect_used, reason = "a session that cannot be simulated must fail the test")]
     fn found(session: &Session, methods: &[Method]) -> Vec<Finding> {
         let measured = measure(session, None, &mut Unwatched).expect("not cancelled");
         let problem = ball_problem(session, &measured).expect("a ball");

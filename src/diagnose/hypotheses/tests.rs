@@ -1,5 +1,4 @@
 //! Every suspicion on simulated sessions with that fault, for both mounts, with sweeps and with single sections.
-#![expect(clippy::expect_used, reason = "a session that cannot be simulated or solved must fail the test")]
 
 use super::*;
 use crate::calibrate::{BallProblem, Method, MethodResult, Mount, solve_all};
