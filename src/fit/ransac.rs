@@ -1,5 +1,7 @@
 //! Seeded random search for a circle among points of which most may belong to something else.
 
+use crate::geometry::stats::SplitMix;
+
 use super::Circle;
 
 /// Hypotheses tried. With an arc over a fifth of the profile one in eight is clean, so 96 miss it once in 10⁵ times.
@@ -33,7 +35,7 @@ pub fn find_circle(x_mm: &[f64], z_mm: &[f64], search: &CircleSearch) -> Option<
     let stride = num_points.div_ceil(SCORED_POINTS).max(1);
     let scored_x: Vec<f64> = x_mm.iter().copied().step_by(stride).collect();
     let scored_z: Vec<f64> = z_mm.iter().copied().step_by(stride).collect();
-    let mut random = SplitMix(0x005e_ed0f_a2c5);
+    let mut random = SplitMix::new(0x005e_ed0f_a2c5);
     let mut best: Option<(Circle, usize)> = None;
     for hypothesis in 0..HYPOTHESES {
         #[expect(
@@ -81,24 +83,4 @@ fn circle_through([a, b, c]: [(f64, f64); 3]) -> Option<Circle> {
     let (x, z) = ((cz * bb - bz * cc) / cross, (bx * cc - cx * bb) / cross);
     let circle = Circle { x_mm: a.0 + x, z_mm: a.1 + z, radius_mm: (x * x + z * z).sqrt() };
     circle.radius_mm.is_finite().then_some(circle)
-}
-
-/// Vigna's `SplitMix64`: a few lines that give the same sequence on every machine.
-struct SplitMix(u64);
-
-impl SplitMix {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut mixed = self.0;
-        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        mixed ^ (mixed >> 31)
-    }
-
-    /// A number below `limit`, which is above zero; the bias of the remainder is far below anything that matters here.
-    fn below(&mut self, limit: usize) -> usize {
-        #[expect(clippy::cast_possible_truncation, reason = "the remainder is below a usize")]
-        let index = (self.next() % limit as u64) as usize;
-        index
-    }
 }

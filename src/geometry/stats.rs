@@ -39,6 +39,33 @@ pub fn robust_std_about_zero(values: &mut [f64]) -> f64 {
     STD_OVER_MAD * median(values)
 }
 
+/// Vigna's `SplitMix64`: a few lines that give the same sequence on every machine.
+#[derive(Clone, Debug)]
+pub struct SplitMix(u64);
+
+impl SplitMix {
+    /// The sequence of a seed.
+    #[must_use]
+    pub const fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    fn draw(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut mixed = self.0;
+        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        mixed ^ (mixed >> 31)
+    }
+
+    /// A number below `limit`, which is above zero; the bias of the remainder is far below anything that matters here.
+    pub fn below(&mut self, limit: usize) -> usize {
+        #[expect(clippy::cast_possible_truncation, reason = "the remainder is below a usize")]
+        let index = (self.draw() % limit as u64) as usize;
+        index
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
