@@ -4,10 +4,12 @@
 //! Data flows `Session` + `BallProblem` + method results → [`diagnose`] → [`Diagnosis`]. Nothing here changes a session;
 //! [`remedy::apply`] makes a changed copy when the user asks for it.
 
+mod consensus;
 pub mod convention;
 pub mod finding;
 pub mod geometry;
 pub mod hypotheses;
+mod model;
 pub mod remedy;
 pub mod stations;
 
