@@ -99,13 +99,7 @@ pub fn minimise_from(
             damping = (damping * 10.0).max(1e-6);
         }
     }
-    Ok(Minimum {
-        state,
-        hessian: normal.hessian,
-        cost: normal.cost,
-        num_iterations: MAX_ITERATIONS,
-        converged: false,
-    })
+    Ok(Minimum { state, hessian: normal.hessian, cost: normal.cost, num_iterations: MAX_ITERATIONS, converged: false })
 }
 
 fn step_size(step: &Gradient) -> f64 {

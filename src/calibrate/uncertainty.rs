@@ -91,9 +91,7 @@ pub fn change_by_radius(
 
 fn to_flange_axes(flange_from_sensor: &Rigid) -> Matrix6<f64> {
     let mut to_flange_axes = Matrix6::identity();
-    to_flange_axes
-        .fixed_view_mut::<3, 3>(3, 3)
-        .copy_from(flange_from_sensor.rotation.to_rotation_matrix().matrix());
+    to_flange_axes.fixed_view_mut::<3, 3>(3, 3).copy_from(flange_from_sensor.rotation.to_rotation_matrix().matrix());
     to_flange_axes
 }
 

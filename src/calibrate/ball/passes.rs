@@ -1,10 +1,10 @@
 //! Passes over the data until nothing moves: linearise, weigh by the noise of the poses, minimise, and again.
 
-use crate::calibrate::observation::{CentreObservation, State};
+use crate::calibrate::observation::{CentreObservation, NUM_UNKNOWNS, State};
 use crate::calibrate::reduced::sums_at;
 use crate::calibrate::solver::{Gradient, Minimum, covariance_for_unit_noise, minimise_sums};
-use crate::calibrate::{BallProblem, EstimatedRadius, SolveError};
-use crate::geometry::Mat3;
+use crate::calibrate::{AboveStated, BallProblem, EstimatedRadius, SolveError};
+use crate::geometry::{Mat3, Vec3, stats};
 
 use super::pose_noise::{PoseNoise, marginalised};
 use super::variance_components::VarianceSpread;
@@ -35,6 +35,8 @@ pub(super) struct Settled {
     pub pose_noise: PoseNoise,
     /// How well that noise is known.
     pub spread: VarianceSpread,
+    /// The scatter against what is stated of that noise.
+    pub above_stated: Option<AboveStated>,
     /// The radius, where it was to be estimated.
     pub radius: Option<EstimatedRadius>,
     /// Change of the unknowns with the radius, a mm.
@@ -49,11 +51,7 @@ impl<F: Fn(&State, f64) -> Vec<CentreObservation>> Linearise for F {}
 ///
 /// # Errors
 /// [`SolveError::Undetermined`] or [`SolveError::Diverged`], as the solver finds.
-pub(super) fn settle(
-    linearised: impl Linearise,
-    problem: &BallProblem,
-    start: State,
-) -> Result<Settled, SolveError> {
+pub(super) fn settle(linearised: impl Linearise, problem: &BallProblem, start: State) -> Result<Settled, SolveError> {
     let observations = merged(linearised(&start, problem.radius_mm));
     let num_stations = observations.chunk_by(|a, b| a.station == b.station).count();
     let noise = PoseNoise::of(problem, observations.len() > num_stations, num_stations);
@@ -66,6 +64,10 @@ pub(super) fn settle(
         settled.radius = Some(found);
     }
     settled.by_radius = change_by_radius(&linearised, radius_mm, &settled)?;
+    if noise.is_stated() {
+        let by_stated = settle_at(&linearised, radius_mm, settled.minimum.state, noise.without_common(), false)?;
+        settled.above_stated = above_stated(&by_stated.observations, &by_stated.minimum.state);
+    }
     Ok(settled)
 }
 
@@ -98,6 +100,7 @@ fn settle_at(
             minimum,
             pose_noise: noise,
             spread: spread.clone(),
+            above_stated: None,
             radius: None,
             by_radius: Gradient::zeros(),
         });
@@ -161,8 +164,7 @@ fn estimated_radius(
             state = settled.minimum.state;
             Ok(settled.minimum.cost)
         };
-        let (behind, here, ahead) =
-            (cost_at(radius_mm - step_mm)?, cost_at(radius_mm)?, cost_at(radius_mm + step_mm)?);
+        let (behind, here, ahead) = (cost_at(radius_mm - step_mm)?, cost_at(radius_mm)?, cost_at(radius_mm + step_mm)?);
         let gradient = (ahead - behind) / (4.0 * step_mm) + (radius_mm - given_mm) * prior_information;
         let information = ((ahead - 2.0 * here + behind) / (2.0 * step_mm * step_mm)).max(0.0) + prior_information;
         std_mm = information.sqrt().recip();
@@ -186,6 +188,35 @@ fn change_by_radius(linearised: &impl Linearise, radius_mm: f64, settled: &Settl
     };
     let slope = (gradient_at(radius_mm + step_mm)? - gradient_at(radius_mm - step_mm)?) / (2.0 * step_mm);
     Ok(covariance_for_unit_noise(&settled.minimum.hessian)? * slope)
+}
+
+/// How much more than their weights say the captures scatter by themselves, or the stations as a whole: the less likely one.
+fn above_stated(observations: &[CentreObservation], state: &State) -> Option<AboveStated> {
+    let of_captures: Vec<f64> =
+        observations.iter().flat_map(|observation| observation.whitened(observation.pull_at(state))).collect();
+    let of_stations: Vec<f64> = observations
+        .chunk_by(|a, b| a.station == b.station)
+        .flat_map(|run| {
+            // The sensor hardly turns within a station, so that its captures' centres are the same but for the travel.
+            let mut whole = run[0].clone();
+            whole.information = run.iter().map(|observation| observation.information).sum();
+            let pull: Vec3 = run.iter().map(|observation| observation.pull_at(state)).sum();
+            whole.whitened(pull).collect::<Vec<f64>>()
+        })
+        .collect();
+    [of_captures, of_stations]
+        .iter()
+        .filter(|residuals| residuals.len() > NUM_UNKNOWNS)
+        .map(|residuals| {
+            let chi_square: f64 = residuals.iter().map(|residual| residual * residual).sum();
+            #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 residuals")]
+            let freedom = (residuals.len() - NUM_UNKNOWNS) as f64;
+            AboveStated {
+                ratio: (chi_square / freedom).sqrt(),
+                p_value: stats::chi_squared_p_value(chi_square, freedom),
+            }
+        })
+        .min_by(|a, b| a.p_value.total_cmp(&b.p_value))
 }
 
 fn movement_mm(before: &State, after: &State) -> f64 {

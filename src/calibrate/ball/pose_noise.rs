@@ -7,7 +7,7 @@
 //! [`Normal::with_common_shift`](crate::calibrate::solver::Normal::with_common_shift).
 
 use crate::calibrate::observation::{CentreObservation, State};
-use crate::calibrate::{BallProblem, Mount, NoiseModel, SolveError};
+use crate::calibrate::{AboveStated, BallProblem, Mount, NoiseModel, SolveError};
 use crate::geometry::so3::hat;
 use crate::geometry::{Mat3, Rigid};
 
@@ -50,15 +50,27 @@ impl PoseNoise {
         self.variances[0].sqrt()
     }
 
+    /// Whether all of the noise of single poses is stated.
+    pub const fn is_stated(&self) -> bool {
+        !self.is_estimated[0] && !self.is_estimated[1]
+    }
+
+    /// The noise of single poses alone.
+    pub const fn without_common(&self) -> Self {
+        let [position, orientation, ..] = self.variances;
+        Self { variances: [position, orientation, 0.0, 0.0], is_estimated: [false; NUM_COMPONENTS], mount: self.mount }
+    }
+
     /// For the reader.
-    pub fn model(&self) -> NoiseModel {
+    pub fn model(&self, above_stated: Option<AboveStated>) -> NoiseModel {
         let [position, orientation, station_position, station_orientation] = self.variances.map(f64::sqrt);
         NoiseModel {
             position_std_mm: position,
             orientation_std_rad: orientation,
             station_position_std_mm: station_position,
             station_orientation_std_rad: station_orientation,
-            is_stated: !self.is_estimated[0] && !self.is_estimated[1],
+            is_stated: self.is_stated(),
+            above_stated,
         }
     }
 

@@ -158,13 +158,11 @@ impl<'a> Components<'a> {
     fn stepped(&self, idx: usize, before: &[f64; NUM_COMPONENTS], step: f64) -> f64 {
         let variance = before[idx];
         let stepped = variance + step;
-        let bounded = if variance > 0.0 {
-            stepped.clamp(variance / MAX_FACTOR, variance * MAX_FACTOR)
-        } else {
-            stepped.max(0.0)
-        };
+        let bounded =
+            if variance > 0.0 { stepped.clamp(variance / MAX_FACTOR, variance * MAX_FACTOR) } else { stepped.max(0.0) };
         let part = bounded * self.size(idx);
-        let others: f64 = (0..NUM_COMPONENTS).filter(|other| *other != idx).map(|other| before[other] * self.size(other)).sum();
+        let others: f64 =
+            (0..NUM_COMPONENTS).filter(|other| *other != idx).map(|other| before[other] * self.size(other)).sum();
         if step < 0.0 && part < NEGLIGIBLE_PART * (others + self.typical_variance()) { 0.0 } else { bounded }
     }
 
@@ -317,7 +315,10 @@ fn trace_of_product(a: &Mat3, b: &Mat3) -> f64 {
 /// The inverse of the rows and columns that are active; zero elsewhere.
 fn inverse_of_active(information: &Matrix4<f64>, is_active: &impl Fn(usize) -> bool) -> Matrix4<f64> {
     // Scaled to a unit diagonal, as mm² and rad² differ by ten orders.
-    let scale = Vector4::from_fn(|idx, _| if is_active(idx) { information[(idx, idx)].max(f64::MIN_POSITIVE).sqrt() } else { 1.0 });
+    let scale =
+        Vector4::from_fn(
+            |idx, _| if is_active(idx) { information[(idx, idx)].max(f64::MIN_POSITIVE).sqrt() } else { 1.0 },
+        );
     let scaled = Matrix4::from_fn(|row, column| {
         if is_active(row) && is_active(column) {
             information[(row, column)] / (scale[row] * scale[column])

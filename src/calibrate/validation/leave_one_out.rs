@@ -52,8 +52,7 @@ pub(super) fn minima_without_each(reduced: &Reduced) -> Vec<Option<Minimum>> {
     if num_stations < MIN_STATIONS {
         return vec![None; num_stations];
     }
-    let sums: Vec<Normal> =
-        (0..num_stations).map(|station| reduced.sums_of_station(station, &reduced.state)).collect();
+    let sums: Vec<Normal> = (0..num_stations).map(|station| reduced.sums_of_station(station, &reduced.state)).collect();
     (0..num_stations)
         .map(|left_out| {
             let mut normal = Normal::zero();
