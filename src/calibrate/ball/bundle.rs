@@ -55,7 +55,7 @@ pub fn solve(problem: &BallProblem) -> Result<Solution, SolveError> {
         problem,
         stations: facts,
         spread: Some(Spread::Modelled(settled.spread)),
-        noise: Some(settled.pose_noise.model()),
+        noise: Some(settled.pose_noise.model(settled.above_stated)),
         radius: settled.radius,
         by_radius: settled.by_radius,
         observations: settled.observations,

@@ -69,7 +69,7 @@ fn find(problem: &BallProblem) -> Result<Found<'_>, SolveError> {
         problem,
         stations,
         spread: Some(Spread::Modelled(found.spread)),
-        noise: Some(found.pose_noise.model()),
+        noise: Some(found.pose_noise.model(found.above_stated)),
         radius: found.radius,
         by_radius: found.by_radius,
         observations: found.observations,
