@@ -9,6 +9,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 pub mod check;
+pub mod plan;
 pub mod report;
 pub mod screenshot;
 pub mod simulate;
@@ -40,6 +41,8 @@ pub enum Command {
     Solve(solve::SolveArgs),
     /// Validates a session file and lists what is odd about it
     Check(check::CheckArgs),
+    /// Plans the stations to measure next
+    Plan(plan::PlanArgs),
     /// Writes a simulated session with its truth
     Simulate(simulate::SimulateArgs),
     /// Not available in this version: says what to use instead
@@ -55,6 +58,7 @@ impl Command {
         match self {
             Self::Solve(args) => solve::run(args),
             Self::Check(args) => check::run(args),
+            Self::Plan(args) => plan::run(args),
             Self::Simulate(args) => simulate::run(args),
             Self::Report(args) => report::run(args),
             Self::Screenshot(args) => screenshot::run(args),

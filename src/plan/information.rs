@@ -8,19 +8,30 @@ use crate::calibrate::uncertainty::point_by_sensor;
 use crate::geometry::so3::hat;
 use crate::geometry::{Mat3, Vec3};
 
+/// Stations are chosen for the points about the workspace point, so far (mm) from it on average, not for that point alone:
+/// a ball that is always seen there says nothing about a turn about it, and profiles are wider than a point.
+const SPREAD_MM: f64 = 15.0;
+
 /// The information about (rotation, translation; ball), and the point in the sensor frame that it is judged by.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Information {
     hessian: Hessian,
-    /// Derivative of the unknowns' part in the point, transposed.
-    by_unknowns: SMatrix<f64, NUM_UNKNOWNS, 3>,
+    /// Derivative of the point by the unknowns, transposed.
+    point: SMatrix<f64, NUM_UNKNOWNS, 3>,
+    /// The same with that of the points about it, whose mean variance is the sum over all columns.
+    points: SMatrix<f64, NUM_UNKNOWNS, 6>,
 }
 
 impl Information {
     pub fn new(hessian: Hessian, point_in_sensor: Vec3) -> Self {
-        let mut by_unknowns = SMatrix::<f64, NUM_UNKNOWNS, 3>::zeros();
-        by_unknowns.fixed_view_mut::<6, 3>(0, 0).copy_from(&point_by_sensor(point_in_sensor).transpose());
-        Self { hessian, by_unknowns }
+        let mut point = SMatrix::<f64, NUM_UNKNOWNS, 3>::zeros();
+        point.fixed_view_mut::<6, 3>(0, 0).copy_from(&point_by_sensor(point_in_sensor).transpose());
+        let mut points = SMatrix::<f64, NUM_UNKNOWNS, 6>::zeros();
+        points.fixed_view_mut::<NUM_UNKNOWNS, 3>(0, 0).copy_from(&point);
+        // Over offsets r in all directions the mean of |ω × r|² is two thirds of |ω|² |r|².
+        let turn = Mat3::identity() * (SPREAD_MM * (2.0_f64 / 3.0).sqrt());
+        points.fixed_view_mut::<3, 3>(0, 3).copy_from(&turn);
+        Self { hessian, point, points }
     }
 
     /// With a station more.
@@ -36,17 +47,17 @@ impl Information {
     /// σ of the point in three dimensions for unit noise; `None` if the information leaves a direction free.
     pub fn point_std(&self) -> Option<f64> {
         let covariance = covariance_for_unit_noise(&self.hessian).ok()?;
-        let variance = (self.by_unknowns.transpose() * covariance * self.by_unknowns).trace();
+        let variance = (self.point.transpose() * covariance * self.point).trace();
         (variance.is_finite() && variance > 0.0).then(|| variance.sqrt())
     }
 
-    /// The variance of the point with a station more, for choosing: without the check of the condition.
-    pub fn point_variance_with(&self, station: &Hessian) -> f64 {
+    /// The mean variance of the points about the workspace point with a station more.
+    pub fn variance_with(&self, station: &Hessian) -> f64 {
         let hessian = self.hessian + station;
         let scaling = unit_diagonal_scaling(&hessian);
         (scaling * hessian * scaling)
             .cholesky()
-            .and_then(|factor| factor.l().solve_lower_triangular(&(scaling * self.by_unknowns)))
+            .and_then(|factor| factor.l().solve_lower_triangular(&(scaling * self.points)))
             .map_or(f64::INFINITY, |part| part.norm_squared())
     }
 }

@@ -87,7 +87,7 @@ impl Search {
             for model_idx in 0..self.cell.models.len() {
                 for place in PLACES {
                     let candidate = Candidate { orientation: *orientation, model_idx, place };
-                    let variance = self.known.point_variance_with(&self.brings(&candidate, &sensor_from_base));
+                    let variance = self.known.variance_with(&self.brings(&candidate, &sensor_from_base));
                     if best.is_none_or(|(_, least)| variance < least) {
                         best = Some((candidate, variance));
                     }
@@ -119,7 +119,7 @@ impl Search {
                         continue;
                     }
                     let sensor_from_base = self.sensor_from_base(trial.orientation);
-                    let variance = self.known.point_variance_with(&self.brings(&trial, &sensor_from_base));
+                    let variance = self.known.variance_with(&self.brings(&trial, &sensor_from_base));
                     if variance < least {
                         (best, least) = (trial, variance);
                     }

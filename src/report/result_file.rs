@@ -3,24 +3,49 @@
 use serde_json::{Map, Value, json};
 
 use crate::calibrate::verdict::judge;
-use crate::calibrate::{MethodResult, Mount, Solution, StationSolution, Uncertainty, Warning};
-use crate::geometry::{Frame, Transform, Vec3};
+use crate::calibrate::{Method, MethodResult, Mount, Solution, StationSolution, Uncertainty, Warning};
+use crate::geometry::{Frame, Transform};
+use crate::plan::Plan;
 use crate::session::Session;
 use crate::text;
 
+use super::diagnosis_entry::{diagnosis_entry, direction_entry, planned_stations, vector};
+
+pub use super::diagnosis_entry::Examination;
+
 /// The format's name.
 pub const FORMAT: &str = "handeye-result";
-/// The format's version.
+/// The format's name of a plan.
+pub const PLAN_FORMAT: &str = "handeye-plan";
+/// The version of both.
 pub const VERSION: u32 = 1;
 
-/// The results of a session as a JSON document. Stations that a method left out are listed as not used.
+/// The results of a session as a JSON document, with what an examination found, if there was one. Stations that a method
+/// left out are listed as not used.
 #[must_use]
-pub fn result_file(session: &Session, results: &[MethodResult]) -> Value {
-    json!({
+pub fn result_file(session: &Session, results: &[MethodResult], examination: Option<&Examination<'_>>) -> Value {
+    let mut file = json!({
         "format": FORMAT,
         "version": VERSION,
         "session": session.name,
         "methods": results.iter().map(|result| method_entry(session, result)).collect::<Vec<_>>(),
+    });
+    if let Some(examination) = examination {
+        file["diagnosis"] = diagnosis_entry(session, examination);
+    }
+    file
+}
+
+/// A plan as a JSON document; `method` is the one whose solution it rests on, none for a plan from nothing.
+#[must_use]
+pub fn plan_file(session: &Session, plan: &Plan, method: Option<Method>) -> Value {
+    json!({
+        "format": PLAN_FORMAT,
+        "version": VERSION,
+        "session": session.name,
+        "method": method.map(Method::id),
+        "workspace_point_std_mm": plan.workspace_point_std_mm,
+        "stations": planned_stations(session, plan),
     })
 }
 
@@ -49,7 +74,10 @@ fn solution_entry(session: &Session, solution: &Solution) -> Value {
             .leave_one_out
             .map_or(Value::Null, |left_out| json!({ "rms": left_out.rms_mm, "max": left_out.max_mm })),
     );
-    entry.insert("uncertainty".to_owned(), solution.uncertainty.as_ref().map_or(Value::Null, uncertainty));
+    entry.insert(
+        "uncertainty".to_owned(),
+        solution.uncertainty.as_ref().map_or(Value::Null, |known| uncertainty(known, solution)),
+    );
     let (verdict, reason) = judge(solution);
     entry.insert(
         "verdict".to_owned(),
@@ -102,19 +130,26 @@ fn transform<Dst: Frame, Src: Frame>(transform: &Transform<Dst, Src>) -> Value {
     })
 }
 
-fn vector(vector: Vec3) -> Value {
-    json!([vector.x, vector.y, vector.z])
-}
-
-fn uncertainty(uncertainty: &Uncertainty) -> Value {
+fn uncertainty(uncertainty: &Uncertainty, solution: &Solution) -> Value {
     let covariance: Vec<Vec<f64>> =
         uncertainty.covariance.row_iter().map(|row| row.iter().copied().collect()).collect();
+    let (weakest, weakest_std_mm) = uncertainty.weakest_direction();
+    let by_radius = solution.change_by_radius;
+    let rotation_by_radius = by_radius.fixed_rows::<3>(0).map(f64::to_degrees);
     json!({
         "translation_std_mm": vector(uncertainty.translation_std_mm),
         "rotation_std_deg": vector(uncertainty.rotation_std_rad.map(f64::to_degrees)),
         "workspace_point_std_mm": uncertainty.workspace_point_std_mm,
         "reference_point_in_sensor_mm": vector(uncertainty.reference_point_in_sensor_mm),
         "covariance": covariance,
+        "workspace_point_95_mm": uncertainty.workspace_point_95_mm,
+        "degrees_of_freedom": uncertainty.degrees_of_freedom.is_finite().then_some(uncertainty.degrees_of_freedom),
+        "weakest_direction": direction_entry(weakest, weakest_std_mm),
+        "by_radius": {
+            "workspace_point_mm_per_mm": vector(solution.workspace_point_by_radius),
+            "translation_mm_per_mm": vector(by_radius.fixed_rows::<3>(3).into_owned()),
+            "rotation_deg_per_mm": vector(rotation_by_radius),
+        },
     })
 }
 

@@ -8,13 +8,18 @@ use std::process::ExitCode;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
-use crate::calibrate::{Method, MethodResult, solve_all};
-use crate::report::result_file::result_file;
-use crate::session::{self, ball_problem, measure};
+use crate::calibrate::validation::{Bootstrap, bootstrap};
+use crate::calibrate::{BallProblem, Method, MethodResult, best_available, solve_all};
+use crate::diagnose::{Case, Diagnosis, diagnose};
+use crate::plan::{Limits, Plan, next_stations};
+use crate::report::result_file::{Examination, result_file};
+use crate::session::{self, Session, ball_problem, measure};
+use crate::text::diagnosis::first_finding;
 use crate::watch::{Cancelled, Watch};
 
 use super::{EXIT_NOTHING_COMPUTED, EXIT_WRONG_INPUT, fail};
 
+mod diagnosis;
 mod paper_tables;
 mod tables;
 
@@ -33,6 +38,15 @@ pub struct SolveArgs {
     /// Print tables in the layout of Lin & Mu's Tables 1 and 2
     #[arg(long, conflicts_with = "json")]
     pub paper_tables: bool,
+    /// Leave out what is wrong with the session, how far the result can be relied on, and where to measure next
+    #[arg(long)]
+    pub no_diagnosis: bool,
+    /// Solve N times with stations drawn with replacement, and print the spread
+    #[arg(
+        long, value_name = "N", conflicts_with_all = ["no_diagnosis", "paper_tables"],
+        value_parser = clap::value_parser!(u32).range(1..=100_000)
+    )]
+    pub bootstrap: Option<u32>,
 }
 
 fn method_parser() -> impl TypedValueParser<Value = Method> {
@@ -77,37 +91,82 @@ pub fn run(args: &SolveArgs) -> ExitCode {
         Ok(session) => session,
         Err(error) => return fail(EXIT_WRONG_INPUT, &error),
     };
-    let methods: Vec<Method> = if args.methods.is_empty() { Method::ALL.to_vec() } else { args.methods.clone() };
-    let mut progress = TerminalProgress::new("reading profiles");
-    let measured = measure(&session, None, &mut progress);
-    progress.clear();
-    let Ok(measured) = measured else {
-        return fail(EXIT_NOTHING_COMPUTED, &Cancelled);
-    };
-    let problem = match ball_problem(&session, &measured) {
-        Ok(problem) => problem,
-        Err(refusal) => return fail(EXIT_NOTHING_COMPUTED, &refusal),
-    };
-    let mut progress = TerminalProgress::new("solving");
-    let results = solve_all(&problem, &methods, &mut progress);
-    progress.clear();
-    let Ok(results) = results else {
-        return fail(EXIT_NOTHING_COMPUTED, &Cancelled);
-    };
-    let text = if args.json {
-        format!("{:#}\n", result_file(&session, &results))
-    } else if args.paper_tables {
-        paper_tables::paper_tables(&session, &results)
-    } else {
-        tables::tables(&session, &problem, &results)
-    };
-    if let Err(exit_code) = super::print(&text) {
-        return exit_code;
-    }
-    exit_code(&results)
+    solved(args, &session).unwrap_or_else(|reason| fail(EXIT_NOTHING_COMPUTED, &reason))
 }
 
-fn exit_code(results: &[MethodResult]) -> ExitCode {
+/// # Errors
+/// Why there is nothing to print, in one line.
+fn solved(args: &SolveArgs, session: &Session) -> Result<ExitCode, String> {
+    let methods: Vec<Method> = if args.methods.is_empty() { Method::ALL.to_vec() } else { args.methods.clone() };
+    let measured = watched("reading profiles", |progress| measure(session, None, progress))?;
+    let problem = ball_problem(session, &measured).map_err(|refusal| refusal.to_string())?;
+    let results = watched("solving", |progress| solve_all(&problem, &methods, progress))?;
+    if args.paper_tables {
+        return Ok(printed(&paper_tables::paper_tables(session, &results), session, &results, None));
+    }
+    let found = if args.no_diagnosis { None } else { Some(Found::new(args, session, &problem, &results)?) };
+    let examination = found.as_ref().map(Found::examination);
+    let text = if args.json {
+        format!("{:#}\n", result_file(session, &results, examination.as_ref()))
+    } else {
+        let section = examination.as_ref().map(|found| diagnosis::section(session, &results, found));
+        tables::tables(session, &problem, &results) + &section.unwrap_or_default()
+    };
+    Ok(printed(&text, session, &results, found.as_ref().map(|found| &found.diagnosis)))
+}
+
+/// What was found out beside the results.
+struct Found {
+    diagnosis: Diagnosis,
+    plan: Option<Plan>,
+    bootstrap: Option<Bootstrap>,
+}
+
+impl Found {
+    fn new(
+        args: &SolveArgs,
+        session: &Session,
+        problem: &BallProblem,
+        results: &[MethodResult],
+    ) -> Result<Self, String> {
+        /// One pose is a hint; `handeye plan` plans more.
+        const NUM_PLANNED: usize = 1;
+        /// The same session gives the same output.
+        const SEED: u64 = 1;
+        let case = Case { session, problem, results };
+        let diagnosis = watched("examining", |progress| diagnose(case, progress))?;
+        let best = best_available(results);
+        let bootstrap = match best.zip(args.bootstrap) {
+            Some((solution, num_draws)) => {
+                Some(watched("drawing stations", |progress| bootstrap(solution, num_draws as usize, SEED, progress))?)
+            }
+            None => None,
+        };
+        let plan = best.and_then(|solution| next_stations(problem, solution, &Limits::default(), NUM_PLANNED).ok());
+        Ok(Self { diagnosis, plan, bootstrap })
+    }
+
+    const fn examination(&self) -> Examination<'_> {
+        Examination { diagnosis: &self.diagnosis, plan: self.plan.as_ref(), bootstrap: self.bootstrap.as_ref() }
+    }
+}
+
+/// Does something with its progress shown on a terminal.
+fn watched<T>(
+    what: &'static str,
+    job: impl FnOnce(&mut TerminalProgress) -> Result<T, Cancelled>,
+) -> Result<T, String> {
+    let mut progress = TerminalProgress::new(what);
+    let outcome = job(&mut progress);
+    progress.clear();
+    outcome.map_err(|cancelled| cancelled.to_string())
+}
+
+/// Prints, and says so if no method gave a result.
+fn printed(text: &str, session: &Session, results: &[MethodResult], diagnosis: Option<&Diagnosis>) -> ExitCode {
+    if let Err(exit_code) = super::print(text) {
+        return exit_code;
+    }
     if results.iter().any(|result| result.outcome.is_ok()) {
         return ExitCode::SUCCESS;
     }
@@ -118,6 +177,9 @@ fn exit_code(results: &[MethodResult]) -> ExitCode {
             // Writing to a string does not fail.
             write!(reasons, "{separator} {} – {error}", result.method.id()).ok();
         }
+    }
+    if let Some(finding) = diagnosis.and_then(|diagnosis| diagnosis.findings.first()) {
+        write!(reasons, "; {}", first_finding(&finding.fault, session)).ok();
     }
     fail(EXIT_NOTHING_COMPUTED, &reasons)
 }

@@ -1,8 +1,8 @@
 //! What the commands print.
 
-use crate::calibrate::{Verdict, VerdictReason, Warning};
+use crate::calibrate::{Method, Mount, Verdict, VerdictReason, Warning};
 
-use super::{verdict_name, warning_message};
+use super::{method_short_name, plural, verdict_name, warning_message};
 
 /// The verdict with its reason, in one line.
 #[must_use]
@@ -21,4 +21,64 @@ pub fn verdict_line(verdict: Verdict, reason: VerdictReason, warnings: &[Warning
         }
         VerdictReason::NoRedundancy => format!("{name}: nothing is left over to judge by; add stations"),
     }
+}
+
+/// There are neither stations nor a rough cell.
+#[must_use]
+pub fn nothing_to_plan_from(reason: &str) -> String {
+    format!(
+        "{}. For a plan before anything is measured say roughly where things are: --sensor-at X Y Z A B C --ball-at X Y Z",
+        reason.trim_end_matches('.')
+    )
+}
+
+/// What a plan is for, and what is known before it.
+#[must_use]
+pub fn plan_head(session: &str, num_stations: usize, method: Option<Method>, std_mm: Option<f64>) -> String {
+    let rests_on = method.map_or_else(
+        || "before anything is measured, for a sensor and a robot of usual noise".to_owned(),
+        |method| {
+            let std = std_mm.map_or_else(|| "not known yet".to_owned(), |std_mm| format!("± {std_mm:.3} mm"));
+            format!("a point in the workspace now: {std} (1 σ, 3D; {})", method_short_name(method))
+        },
+    );
+    format!("{session} · {num_stations} station{} to measure next\n{rests_on}\n\n", plural(num_stations))
+}
+
+/// Heads of a plan's columns.
+#[must_use]
+pub fn plan_columns(angle_names: [&str; 3]) -> String {
+    let [a, b, c] = angle_names.map(|name| format!("{name}/°"));
+    format!(
+        "no. {:>10} {:>10} {:>10}  {a:>9} {b:>9} {c:>9}  {:>6} {:>8} {:>6}  {:>9}\n",
+        "x/mm", "y/mm", "z/mm", "tilt/°", "towards°", "turn/°", "σ then/mm"
+    )
+}
+
+/// One station of a plan.
+#[must_use]
+pub fn plan_row(
+    number: usize,
+    pose_mm: &[String; 3],
+    angles_deg: &[String; 3],
+    turned_deg: &[String; 3],
+    std_mm: &str,
+) -> String {
+    let ([x, y, z], [a, b, c], [tilt, azimuth, spin]) = (pose_mm, angles_deg, turned_deg);
+    format!(
+        "{number:<3} {x:>10} {y:>10} {z:>10}  {a:>9} {b:>9} {c:>9}  {tilt:>6} {azimuth:>8} {spin:>6}  {std_mm:>9}\n"
+    )
+}
+
+/// What a plan's columns mean.
+#[must_use]
+pub fn plan_foot(mount: Mount, convention: &str) -> String {
+    let line = match mount {
+        Mount::OnFlange => "flange in the base",
+        Mount::Fixed => "flange (with the ball) in the base",
+    };
+    format!(
+        "\nposes: {line} at the first capture, {convention}; then sweep across the ball as at the other stations\n\
+         tilt, towards, turn: of the range axis from the middle of the stations · σ then: with this station and those above\n"
+    )
 }

@@ -1,0 +1,149 @@
+//! `handeye plan`: the stations to measure next, as poses that the controller takes.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use crate::calibrate::{BallProblem, Method, MethodResult, best_available, solve_all};
+use crate::geometry::{PoseConvention, Rigid, Vec3};
+use crate::plan::{Limits, Plan, RoughCell, from_nothing, next_stations};
+use crate::report::digits::fixed;
+use crate::report::result_file::plan_file;
+use crate::session::{self, Session, ball_problem, measure};
+use crate::text::cli as words;
+use crate::watch::Unwatched;
+
+use super::{EXIT_NOTHING_COMPUTED, EXIT_WRONG_INPUT, fail};
+
+/// Arguments of `handeye plan`.
+#[derive(Clone, Debug, clap::Args)]
+#[command(allow_negative_numbers = true)]
+pub struct PlanArgs {
+    /// Session file
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// How many stations to plan
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..=100))]
+    pub stations: u16,
+    /// Most tilt of the range axis from the middle of the stations, degrees
+    #[arg(long, value_name = "DEG", default_value_t = Limits::default().max_tilt_deg, value_parser = finite)]
+    pub max_tilt_deg: f64,
+    /// Most turn about the range axis, either way, degrees
+    #[arg(long, value_name = "DEG", default_value_t = Limits::default().max_spin_deg, value_parser = finite)]
+    pub max_spin_deg: f64,
+    /// Least and greatest distance of the ball's centre along the range axis, mm; as in the session if not given
+    #[arg(long, num_args = 2, value_names = ["MIN", "MAX"], value_parser = finite)]
+    pub standoff_mm: Option<Vec<f64>>,
+    /// How far the ball's centre may be from the middle of the profile, mm; as in the session if not given
+    #[arg(long, value_name = "MM", value_parser = finite)]
+    pub half_width_mm: Option<f64>,
+    /// Where the sensor is on the flange (in the base if it stands beside the robot), roughly: mm and the robot's own angles.
+    /// For a session that cannot be solved yet
+    #[arg(
+        long, num_args = 6, value_names = ["X", "Y", "Z", "A", "B", "C"], value_parser = finite, requires = "ball_at"
+    )]
+    pub sensor_at: Option<Vec<f64>>,
+    /// Where the ball is in the base (on the flange if the sensor stands beside the robot), roughly, mm
+    #[arg(long, num_args = 3, value_names = ["X", "Y", "Z"], value_parser = finite, requires = "sensor_at")]
+    pub ball_at: Option<Vec<f64>>,
+    /// The direction in the base (of the flange if the sensor stands beside the robot) along which the sensor looks in the
+    /// middle of all stations; with --sensor-at
+    #[arg(
+        long, num_args = 3, value_names = ["X", "Y", "Z"], value_parser = finite, default_values_t = [0.0, 0.0, -1.0],
+        requires = "sensor_at"
+    )]
+    pub looks_along: Vec<f64>,
+    /// Print JSON instead of a table
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Plans, and prints the plan.
+#[must_use]
+pub fn run(args: &PlanArgs) -> ExitCode {
+    let session = match session::load(&args.file) {
+        Ok(session) => session,
+        Err(error) => return fail(EXIT_WRONG_INPUT, &error),
+    };
+    match planned(args, &session) {
+        Ok((plan, method)) => {
+            let text = if args.json {
+                format!("{:#}\n", plan_file(&session, &plan, method))
+            } else {
+                table(&session, &plan, method)
+            };
+            super::print(&text).map_or_else(|exit_code| exit_code, |()| ExitCode::SUCCESS)
+        }
+        Err(reason) => fail(EXIT_NOTHING_COMPUTED, &reason),
+    }
+}
+
+/// The plan, and the method whose solution it rests on; none for a plan from nothing.
+fn planned(args: &PlanArgs, session: &Session) -> Result<(Plan, Option<Method>), String> {
+    let measured = measure(session, None, &mut Unwatched).map_err(|cancelled| cancelled.to_string())?;
+    let problem = ball_problem(session, &measured).map_err(|refusal| refusal.to_string())?;
+    let results = solve_all(&problem, &Method::ALL, &mut Unwatched).map_err(|cancelled| cancelled.to_string())?;
+    let num = usize::from(args.stations);
+    let limits = limits(args);
+    if let Some(solution) = best_available(&results) {
+        let plan = next_stations(&problem, solution, &limits, num).map_err(|refusal| refusal.to_string())?;
+        return Ok((plan, Some(solution.method)));
+    }
+    let cell =
+        rough_cell(args, session, &problem).ok_or_else(|| words::nothing_to_plan_from(&first_reason(&results)))?;
+    let limits = Limits { standoff_mm: limits.standoff_mm.or_else(|| standoff_about_reference(&problem)), ..limits };
+    let plan = from_nothing(&cell, &limits, num).map_err(|refusal| refusal.to_string())?;
+    Ok((plan, None))
+}
+
+fn first_reason(results: &[MethodResult]) -> String {
+    results.iter().rev().find_map(|result| result.outcome.as_ref().err()).map_or_else(String::new, ToString::to_string)
+}
+
+fn limits(args: &PlanArgs) -> Limits {
+    Limits {
+        max_tilt_deg: args.max_tilt_deg,
+        max_spin_deg: args.max_spin_deg,
+        standoff_mm: args.standoff_mm.as_deref().and_then(|range| range.try_into().ok()),
+        half_width_mm: args.half_width_mm,
+    }
+}
+
+/// A tenth of the sensor's reference distance either way.
+fn standoff_about_reference(problem: &BallProblem) -> Option<[f64; 2]> {
+    problem.reference_distance_mm.map(|distance| [0.9 * distance, 1.1 * distance])
+}
+
+fn rough_cell(args: &PlanArgs, session: &Session, problem: &BallProblem) -> Option<RoughCell> {
+    let &[x, y, z, a, b, c] = args.sensor_at.as_deref()? else { return None };
+    let rotation = session.robot.pose_convention.rotation_from_angles_deg([a, b, c]);
+    Some(RoughCell {
+        mount: session.mount,
+        flange_from_sensor: Rigid::from_parts(Vec3::new(x, y, z).into(), rotation),
+        ball_in_base_mm: Vec3::from_column_slice(args.ball_at.as_deref()?),
+        radius_mm: problem.radius_mm,
+        looks_along_in_base: Vec3::from_column_slice(&args.looks_along),
+    })
+}
+
+/// The plan for people: poses in the robot's own angles.
+fn table(session: &Session, plan: &Plan, method: Option<Method>) -> String {
+    let convention: &PoseConvention = session.robot.pose_convention;
+    let std = |std_mm: Option<f64>| std_mm.map_or_else(|| "–".to_owned(), |std_mm| fixed(std_mm, 3));
+    let mut out = words::plan_head(&session.name, plan.stations.len(), method, plan.workspace_point_std_mm);
+    let [first, second, third] = convention.angle_names;
+    out.push_str(&words::plan_columns([first, second, third]));
+    for (idx, station) in plan.stations.iter().enumerate() {
+        let position = station.base_from_flange.translation_mm();
+        let [a, b, c] = convention.angles_deg_from_rotation(&station.base_from_flange.rotation());
+        let pose = [position.x, position.y, position.z].map(|value| fixed(value, 2));
+        let angles = [a, b, c].map(|value| fixed(value, 3));
+        let turned = [station.tilt_deg, station.azimuth_deg, station.spin_deg].map(|value| fixed(value, 0));
+        out.push_str(&words::plan_row(idx + 1, &pose, &angles, &turned, &std(station.workspace_point_std_mm)));
+    }
+    out.push_str(&words::plan_foot(session.mount, convention.label));
+    out
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|value: &f64| value.is_finite()).ok_or_else(|| "expected a number".to_owned())
+}

@@ -1,0 +1,82 @@
+//! The section that `solve` prints after its tables: what is wrong, how far the result can be relied on, where to measure
+//! next.
+
+use std::fmt::Write as _;
+
+use crate::calibrate::MethodResult;
+use crate::calibrate::{Solution, best_available};
+use crate::plan::Plan;
+use crate::report::digits::fixed;
+use crate::report::result_file::Examination;
+use crate::session::Session;
+use crate::text::diagnosis as words;
+
+/// The section, headed "Diagnosis". Writing to a string does not fail, hence the `ok()`s.
+pub fn section(session: &Session, results: &[MethodResult], examination: &Examination<'_>) -> String {
+    let mut out = format!("\n{}\n", words::HEADING);
+    findings(&mut out, session, examination);
+    let solution = best_available(results);
+    let lines = solution.into_iter().flat_map(|solution| figures(solution, examination));
+    for line in lines.chain(examination.plan.and_then(|plan| next_pose(session, plan))) {
+        writeln!(out, "  {line}").ok();
+    }
+    out
+}
+
+fn findings(out: &mut String, session: &Session, examination: &Examination<'_>) {
+    let findings = &examination.diagnosis.findings;
+    if findings.is_empty() {
+        writeln!(out, "  {}", words::NOTHING_FOUND).ok();
+    }
+    for finding in findings {
+        let message = words::fault_message(&finding.fault, session);
+        let remedy = words::fault_remedy(&finding.fault, session);
+        write!(out, "  ! [{}] {message} {remedy}", finding.fault.code()).ok();
+        if let Some(residual_mm) = finding.evidence.residual_mm {
+            write!(out, " {}", words::residual_falls(residual_mm)).ok();
+        }
+        out.push('\n');
+    }
+    if let Some(first) = findings.first() {
+        let step = first
+            .remedy
+            .as_ref()
+            .map_or_else(|| words::fault_remedy(&first.fault, session), |remedy| words::remedy_label(remedy, session));
+        writeln!(out, "  {}", words::next_step_line(&step)).ok();
+    }
+}
+
+fn figures(solution: &Solution, examination: &Examination<'_>) -> Vec<String> {
+    let validation = examination.diagnosis.validation.as_ref();
+    let most_influential = validation.and_then(|validation| {
+        let moves = |idx: usize| validation.influence[idx].moves_workspace_point_mm;
+        (0..validation.influence.len())
+            .max_by(|a, b| moves(*a).total_cmp(&moves(*b)))
+            .map(|idx| &validation.influence[idx])
+    });
+    [
+        validation.and_then(|validation| validation.split_half.as_ref()).map(words::split_half_line),
+        validation.and_then(|validation| validation.normality.as_ref()).map(words::normality_line),
+        most_influential.map(words::influence_line),
+        examination.bootstrap.map(words::bootstrap_line),
+        solution.uncertainty.as_ref().map(|uncertainty| words::accuracy_line(uncertainty, solution.mount)),
+        Some(words::radius_line(solution)),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+fn next_pose(session: &Session, plan: &Plan) -> Option<String> {
+    let station = plan.stations.first()?;
+    let convention = session.robot.pose_convention;
+    let named = |names: [&str; 3], values: [f64; 3], unit: &str| {
+        let parts: Vec<String> =
+            names.iter().zip(values).map(|(name, value)| format!("{name} {}", fixed(value, 2))).collect();
+        format!("{}{unit}", parts.join(" "))
+    };
+    let position = named(["x", "y", "z"], station.base_from_flange.translation_mm().into(), " mm");
+    let angles = convention.angles_deg_from_rotation(&station.base_from_flange.rotation());
+    let angles = named(convention.angle_names, angles, "°");
+    Some(words::next_pose_line(&position, &angles, plan.workspace_point_std_mm, station.workspace_point_std_mm))
+}
