@@ -2,10 +2,10 @@
 //! centre on its own, many small sets of stations are solved, and the best of them grows for as long as the next station
 //! fits.
 
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, UnitQuaternion};
 
 use crate::calibrate::observation::{CentreObservation, NUM_UNKNOWNS, State};
-use crate::calibrate::rotation_start::PoseGeometry;
+use crate::calibrate::rotation_start::{PoseGeometry, octahedral_rotations};
 use crate::calibrate::solver::{Hessian, covariance_for_unit_noise, minimise};
 use crate::calibrate::{BallProblem, Capture, Method, Mount, Reading, SideChoice, Station, solve};
 use crate::geometry::so3::hat;
@@ -18,6 +18,12 @@ pub const MIN_CLEAN_STATIONS: usize = 5;
 /// Small sets drawn. With eight of twenty wrong one in twenty is clean, so that 120 miss it once in 400 times; with fewer
 /// wrong never.
 const DRAWS: usize = 120;
+/// Stations of a small set whose sides are open: more, as x and z alone have to tell the sides.
+const OPEN_SET: usize = 8;
+/// Weight of y = 0 ± R/2 beside x and z, which are a hundred times better known.
+const WEIGHT_OF_Y: f64 = 1e-4;
+/// Rotations nearer than this are the same minimum.
+const SAME_MINIMUM_RAD: f64 = 1e-3;
 /// While sets are compared, differences below this do not matter, mm: the noise of a poor arm.
 const SEARCH_STD_MM: f64 = 0.05;
 /// Stations that scatter by more than this do not agree, mm: no arm in working order is that bad.
@@ -107,6 +113,9 @@ pub(super) struct Consensus {
     pub misfit_mm: Vec<f64>,
     /// A misfit below this is noise, mm: by the worst of those that agree.
     pub tolerance_mm: f64,
+    /// Scatter of those that agree over what their own and the stated noise let one expect; how improbable that is, as a
+    /// standard normal value.
+    pub noise_ratio_and_score: [f64; 2],
 }
 
 impl Consensus {
@@ -237,9 +246,11 @@ impl<'a> Stations<'a> {
         if found.as_ref().is_some_and(|found| found.is_credible) {
             return found.map(|found| (self, found));
         }
-        let turned = self.turned();
-        match turned.agreement(at_least) {
-            Some(other) if other.is_credible => Some((turned, other)),
+        // Reduced points and single sections are the same either way.
+        let is_swept = self.problem.stations.iter().any(|station| station.captures.len() >= MIN_STEPS);
+        let turned = is_swept.then(|| self.turned());
+        match turned.and_then(|turned| turned.agreement(at_least).map(|other| (turned, other))) {
+            Some((turned, other)) if other.is_credible => Some((turned, other)),
             _ => found.map(|found| (self, found)),
         }
     }
@@ -247,14 +258,14 @@ impl<'a> Stations<'a> {
     /// The set that agrees best when at least so many have to, grown for as long as the next one fits.
     pub fn agreement(&self, at_least: usize) -> Option<Consensus> {
         let all: Vec<usize> = (0..self.readings.len()).collect();
-        if let Some(fit) = self.start(&all).and_then(|state| self.fit(&all, state)) {
+        if let Some(fit) = self.start_of_all().and_then(|state| self.fit(&all, state)) {
             let consensus = self.judged(&all, &fit);
             if fit.extra_variance.sqrt() < SEARCH_STD_MM && consensus.agrees.iter().all(|agrees| *agrees) {
                 return Some(consensus);
             }
         }
-        let mut members = self.best_set(at_least)?;
-        let mut fit = self.fit(&members, self.start(&members)?)?;
+        let (mut members, state) = self.best_set(at_least)?;
+        let mut fit = self.fit(&members, state)?;
         loop {
             let outside = all.iter().filter(|idx| !members.contains(idx));
             let next = outside.map(|idx| (*idx, self.score(*idx, &fit))).min_by(|a, b| a.1.total_cmp(&b.1));
@@ -293,27 +304,31 @@ impl<'a> Stations<'a> {
             misfit_mm.push(misfit);
         }
         let is_credible = fit.extra_variance.sqrt() < CREDIBLE_STD_MM;
-        Consensus { state: fit.state, is_credible, agrees, misfit_mm, tolerance_mm }
+        let noise_ratio_and_score = self.noise_ratio_and_score(members, fit);
+        Consensus { state: fit.state, is_credible, agrees, misfit_mm, tolerance_mm, noise_ratio_and_score }
     }
 
     /// Of so many stations those that agree best, by many small sets that are improved in turn.
-    fn best_set(&self, num: usize) -> Option<Vec<usize>> {
+    fn best_set(&self, num: usize) -> Option<(Vec<usize>, State)> {
         let all: Vec<usize> = (0..self.readings.len()).collect();
         let mut random = SplitMix::new(0x0005_7a71_0215);
+        let has_open = self.readings.iter().any(|reading| reading.side_is_open);
+        let set_size = if has_open { OPEN_SET } else { MIN_CLEAN_STATIONS }.min(all.len());
         let without_one = all.iter().map(|left| all.iter().copied().filter(|idx| idx != left).collect::<Vec<_>>());
         let drawn = (0..DRAWS).map(|_| {
             let mut set = all.clone();
-            for place in 0..MIN_CLEAN_STATIONS.min(set.len()) {
+            for place in 0..set_size {
                 let other = place + random.below(set.len() - place);
                 set.swap(place, other);
             }
-            set.truncate(MIN_CLEAN_STATIONS);
+            set.truncate(set_size);
             set
         });
         let mut improved: Vec<(f64, Vec<usize>, State)> = std::iter::once(all.clone())
             .chain(without_one)
             .chain(drawn)
-            .filter_map(|set| self.improved(self.start(&set)?, num, FIRST_STEPS))
+            .flat_map(|set| self.starts(&set))
+            .filter_map(|start| self.improved(start, num, FIRST_STEPS))
             .collect();
         improved.sort_by(|a, b| a.0.total_cmp(&b.0));
         improved.dedup_by(|a, b| a.1 == b.1);
@@ -322,7 +337,7 @@ impl<'a> Stations<'a> {
             .take(FINALISTS)
             .filter_map(|(_, _, state)| self.improved(state, num, LAST_STEPS))
             .min_by(|a, b| a.0.total_cmp(&b.0))
-            .map(|(_, set, _)| set)
+            .map(|(_, set, state)| (set, state))
     }
 
     /// The stations that fit a state best, the state that fits these best, and so on.
@@ -353,19 +368,60 @@ impl<'a> Stations<'a> {
         covariance.cholesky().map_or(f64::INFINITY, |factor| misfit.dot(&factor.solve(&misfit)))
     }
 
-    /// A state for these stations from nothing.
-    fn start(&self, set: &[usize]) -> Option<State> {
-        let readings = || set.iter().map(|idx| &self.readings[*idx]);
-        if readings().any(|reading| reading.side_is_open) {
-            let stations = readings().map(single_capture_station).collect();
+    /// A state for all stations from nothing; where sides are open, from the method that knows best how to find them.
+    fn start_of_all(&self) -> Option<State> {
+        if self.readings.iter().any(|reading| reading.side_is_open) {
+            let stations = self.readings.iter().map(single_capture_station).collect();
             let problem = BallProblem { stations, ..self.problem.clone() };
             return solve(&problem, Method::BallFixedPoint).ok().map(|solution| solution.reduced.state);
         }
+        let all: Vec<usize> = (0..self.readings.len()).collect();
+        self.starts(&all).pop()
+    }
+
+    /// States for these stations from nothing; several where sides are open, as x and z alone then have to tell them.
+    fn starts(&self, set: &[usize]) -> Vec<State> {
+        let readings = || set.iter().map(|idx| &self.readings[*idx]);
         let poses: Vec<Rigid> = readings().map(|reading| reading.base_from_flange).collect();
-        let centres: Vec<Vec3> = readings().map(|reading| reading.centre).collect();
-        let poses = PoseGeometry::new(&poses).ok()?;
-        let reduced = poses.reduced(&centres);
-        Some(reduced.state(reduced.best_minimum().flange_from_sensor))
+        let Ok(geometry) = PoseGeometry::new(&poses) else { return Vec::new() };
+        if !readings().any(|reading| reading.side_is_open) {
+            let centres: Vec<Vec3> = readings().map(|reading| reading.centre).collect();
+            let reduced = geometry.reduced(&centres);
+            return vec![reduced.state(reduced.best_minimum().flange_from_sensor)];
+        }
+        let flat: Vec<Vec3> = readings()
+            .map(|reading| {
+                if reading.side_is_open {
+                    reading.centre.component_mul(&Vec3::new(1.0, 0.0, 1.0))
+                } else {
+                    reading.centre
+                }
+            })
+            .collect();
+        let reduced = geometry.reduced(&flat);
+        let observations: Vec<CentreObservation> = readings()
+            .zip(&flat)
+            .enumerate()
+            .map(|(place, (reading, centre))| {
+                let y_weight = if reading.side_is_open { WEIGHT_OF_Y } else { 1.0 };
+                CentreObservation {
+                    information: Mat3::from_diagonal(&Vec3::new(1.0, y_weight, 1.0)),
+                    ..CentreObservation::point(place, reading.base_from_flange, *centre)
+                }
+            })
+            .collect();
+        let mut minima: Vec<UnitQuaternion<f64>> = Vec::new();
+        for rotation in octahedral_rotations() {
+            let found = reduced.descend(rotation).flange_from_sensor;
+            if !minima.iter().any(|known| known.angle_to(&found) < SAME_MINIMUM_RAD) {
+                minima.push(found);
+            }
+        }
+        minima
+            .into_iter()
+            .filter_map(|rotation| minimise(&observations.iter(), reduced.state(rotation)).ok())
+            .map(|minimum| minimum.state)
+            .collect()
     }
 
     /// Minimises over these stations, with their noise and a variance on top of it; open sides go where the ball is.
@@ -408,6 +464,21 @@ impl<'a> Stations<'a> {
             extra_variance = self.extra_variance(set, &state, freedom).max(LEAST_VARIANCE);
         }
         Some(Fit { state, covariance: covariance_for_unit_noise(&hessian).ok()?, extra_variance, freedom })
+    }
+
+    fn noise_ratio_and_score(&self, members: &[usize], fit: &Fit) -> [f64; 2] {
+        let chi_square: f64 = members
+            .iter()
+            .map(|idx| {
+                let reading = &self.readings[*idx];
+                let misfit = reading.misfit(&fit.state);
+                let covariance = self.covariance(reading, &fit.state) + Mat3::identity() * LEAST_VARIANCE;
+                covariance.cholesky().map_or(0.0, |factor| misfit.dot(&factor.solve(&misfit)))
+            })
+            .sum();
+        let mean = chi_square / fit.freedom;
+        // The known noise is as good as one estimated from very much.
+        [mean.sqrt(), normal_score(mean, fit.freedom, 1e6)]
     }
 
     /// The variance for which the stations scatter as they are expected to, mm².

@@ -25,7 +25,9 @@ pub fn examine(case: Case<'_>) -> Vec<Finding> {
     let accused = accused(&stations, &consensus);
     let agreeing = stations.readings.len() - accused.len();
     if consensus.is_credible && agreeing >= needed_stations(stations.readings.len()) {
-        return findings(&stations, &consensus, &accused);
+        let mut found = findings(&stations, &consensus, &accused);
+        found.extend(noise_above_stated(case, &stations, &consensus));
+        return found;
     }
     shifted_order(case).or_else(|| too_few(&stations, num_stations)).into_iter().collect()
 }
@@ -68,6 +70,28 @@ fn findings(stations: &Stations<'_>, consensus: &Consensus, accused: &[usize]) -
         findings.push(finding(fault, bars(stations, consensus, &[idx]), Some(Remedy::LeaveOut(vec![station_idx]))));
     }
     findings
+}
+
+/// Whether those that agree scatter by far more than the session says that they should.
+fn noise_above_stated(case: Case<'_>, stations: &Stations<'_>, consensus: &Consensus) -> Option<Finding> {
+    /// Biased flanks make stations scatter twice as much as their noise; that is not the robot's fault.
+    const NOTEWORTHY_RATIO: f64 = 3.0;
+    /// Once in ten million sessions by chance.
+    const AT_STDS: f64 = 5.0;
+    let noise = &case.problem.noise;
+    let (Some(_), Some(_)) = (noise.position_std_mm, noise.orientation_std_rad) else {
+        return None;
+    };
+    let [ratio, score] = consensus.noise_ratio_and_score;
+    (ratio > NOTEWORTHY_RATIO && score > AT_STDS).then(|| Finding {
+        severity: Severity::Doubtful,
+        ..finding(Fault::NoiseAboveStated { ratio, p_value: upper_tail(score) }, bars(stations, consensus, &[]), None)
+    })
+}
+
+/// The probability of a standard normal value above a large one, by the first term of its asymptotic series.
+fn upper_tail(score: f64) -> f64 {
+    (-0.5 * score * score).exp() / (score * (2.0 * std::f64::consts::PI).sqrt())
 }
 
 fn finding(fault: Fault, plot: Plot, remedy: Option<Remedy>) -> Finding {
