@@ -21,7 +21,7 @@ pub enum Spread {
         degrees_of_freedom: f64,
     },
     /// The weights are those of the noise, stated or estimated.
-    Modelled(VarianceSpread),
+    Modelled(Box<VarianceSpread>),
 }
 
 impl Spread {

@@ -54,7 +54,7 @@ pub fn solve(problem: &BallProblem) -> Result<Solution, SolveError> {
         method: Method::BallBundle,
         problem,
         stations: facts,
-        spread: Some(Spread::Modelled(settled.spread)),
+        spread: Some(Spread::Modelled(Box::new(settled.spread))),
         noise: Some(settled.pose_noise.model(settled.above_stated)),
         radius: settled.radius,
         by_radius: settled.by_radius,

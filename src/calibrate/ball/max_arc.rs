@@ -68,7 +68,7 @@ fn find(problem: &BallProblem) -> Result<Found<'_>, SolveError> {
         method: Method::BallMaxArc,
         problem,
         stations,
-        spread: Some(Spread::Modelled(found.spread)),
+        spread: Some(Spread::Modelled(Box::new(found.spread))),
         noise: Some(found.pose_noise.model(found.above_stated)),
         radius: found.radius,
         by_radius: found.by_radius,
