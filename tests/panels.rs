@@ -24,7 +24,7 @@ use handeye::ui::actions::Action;
 use handeye::ui::arcs::ArcsState;
 use handeye::ui::compare::CompareState;
 use handeye::ui::diagnosis::{DiagnosisState, Seen, View};
-use handeye::ui::{self, PanelContext, Selection};
+use handeye::ui::{self, PanelContext, Selection, Step};
 
 #[derive(Clone, Copy)]
 enum Shown {
@@ -280,9 +280,10 @@ fn every_sample_has_its_arcs_or_says_what_to_do() {
 }
 
 #[test]
-fn without_a_session_both_panels_say_what_to_do() {
+fn without_a_session_the_panels_say_what_to_do() {
     Bench::empty(Shown::Arcs).harness().get_by_label(arcs_words::NO_SESSION);
     Bench::empty(Shown::Compare).harness().get_by_label(compare_words::NO_SESSION);
+    Bench::empty(Shown::Diagnosis).harness().get_by_label(panel_words::NO_SESSION);
 }
 
 #[test]
@@ -496,7 +497,7 @@ fn a_finding_is_mended_by_its_button_and_by_enter() {
     let session = sample("clean-sweeps.json");
     harness.get_by_label(&fault_words::remedy_label(&Remedy::LeaveOut(vec![3]), &session)).click();
     harness.run_steps(3);
-    assert_eq!(harness.state().commands, [remedy.clone()]);
+    assert_eq!(harness.state().commands.as_slice(), std::slice::from_ref(&remedy));
     let mut harness = diagnosing(made_up(one_finding_a_plot())).harness();
     press(&mut harness, Key::Enter);
     assert_eq!(harness.state().commands, [remedy]);
@@ -520,29 +521,100 @@ fn arrow_keys_go_through_the_findings_and_each_shows_its_evidence() {
     }
 }
 
-// LOOK
 #[test]
-fn look() {
-    for (name, theme, size) in [
-        ("wide", egui::Theme::Light, [948.0, 792.0]),
-        ("narrow", egui::Theme::Light, [532.0, 660.0]),
-        ("tall", egui::Theme::Light, [532.0, 1700.0]),
-        ("dark", egui::Theme::Dark, [948.0, 792.0]),
-    ] {
-        let mut harness = Harness::builder()
-            .with_size(size)
-            .renderer(Software::default())
-            .with_theme(theme)
-            .with_context_setup(ui::theme::install)
-            .build_ui_state(Bench::ui, diagnosing(made_up(one_finding_a_plot())));
-        harness.run_steps(6);
-        for idx in 0..7 {
-            harness.render().expect("drawn").save(format!("/tmp/look/{name}{idx}.png")).expect("saved");
-            if name == "narrow" || name == "tall" || name == "dark" {
-                break;
-            }
-            press(&mut harness, Key::ArrowDown);
-            harness.run_steps(3);
+fn the_next_step_stands_in_the_band_of_the_comparison() {
+    let session = sample("one-bad-pose.json");
+    let mut harness = Bench::with(Shown::Compare, session.clone()).harness();
+    harness.get_by_label(&fault_words::remedy_label(&Remedy::LeaveOut(vec![6]), &session)).click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().commands, [Command::ApplyRemedy(Remedy::LeaveOut(vec![6]))]);
+    harness.get_by_label(panel_words::SEE_DIAGNOSIS).click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().actions, [Action::GoTo(Step::Diagnosis)]);
+    let mut harness = Bench::with(Shown::Compare, sample("clean-sweeps.json")).harness();
+    harness.get_by_label(panel_words::SEE_NEXT_POSES).click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().actions, [Action::GoTo(Step::Diagnosis)]);
+}
+
+#[test]
+fn where_nothing_was_found_the_panel_says_what_was_looked_at() {
+    let harness = diagnosing(made_up(Vec::new())).harness();
+    harness.get_by_label(fault_words::NOTHING_FOUND);
+    harness.get_by_label(panel_words::STATIONS_AGREE);
+    for line in panel_words::CHECKED {
+        harness.get_by_label(line);
+    }
+}
+
+#[test]
+fn a_diagnosis_of_an_earlier_revision_stays_but_mends_nothing() {
+    let out_of_date = MadeUp { is_current: false, ..made_up(one_finding_a_plot()) };
+    let mut harness = diagnosing(out_of_date).harness();
+    harness.get_by_label(&finding_name(0));
+    assert!(harness.query_all_by_label(panel_words::OUT_OF_DATE).count() >= 2, "the findings and the plan are marked");
+    let label = fault_words::remedy_label(&Remedy::LeaveOut(vec![3]), &sample("clean-sweeps.json"));
+    harness.get_by_label(&label).click();
+    press(&mut harness, Key::Enter);
+    assert!(harness.state().commands.is_empty());
+}
+
+#[test]
+fn the_bootstrap_is_started_by_its_button_and_stopped_by_escape() {
+    let mut harness = diagnosing(made_up(Vec::new())).harness();
+    harness.get_by_label(&panel_words::bootstrap_button(500)).click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().commands, [Command::StartBootstrap { num_draws: 500 }]);
+    let progress = Some(Progress { done: 312, total: 500 });
+    let mut harness = diagnosing(MadeUp { bootstrap_progress: progress, ..made_up(Vec::new()) }).harness();
+    harness.get_by_label(&panel_words::bootstrap_progress(312, 500));
+    press(&mut harness, Key::Escape);
+    harness.get_by_label(panel_words::CANCEL_BOOTSTRAP).click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().commands, [Command::CancelBootstrap, Command::CancelBootstrap]);
+}
+
+#[test]
+fn other_conventions_are_tried_on_request() {
+    let mut harness = diagnosing(made_up(Vec::new())).harness();
+    harness.get_by_label(panel_words::TRY_READINGS).click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().commands, [Command::RankReadings]);
+    harness.get_by_label(panel_words::READINGS);
+}
+
+#[test]
+fn the_limits_of_the_plan_are_edited_in_place() {
+    let mut harness = diagnosing(made_up(Vec::new())).harness();
+    harness.get_by_label(panel_words::STANDOFF).click();
+    harness.run_steps(3);
+    let Some(Command::SetPlanLimits(limits)) = harness.state().commands.first() else { panic!("a new limit") };
+    let [low, high] = limits.standoff_mm.expect("ticked");
+    // The sample's balls are about 80 mm away.
+    assert!(40.0 < low && low < high && high < 120.0, "{low} {high}");
+}
+
+#[test]
+fn every_sample_can_be_diagnosed_at_every_width() {
+    for sample in samples::ALL {
+        let session = session::parse(sample.json.as_bytes(), sample.file_name).expect("the sample is a session");
+        for width in [532.0, 948.0, 1600.0] {
+            let harness = Bench::with(Shown::Diagnosis, session.clone()).harness_of_size([width, 792.0]);
+            harness.get_by_label(panel_words::FINDINGS);
+            harness.get_by_label(panel_words::NEXT_POSES);
+            assert!(harness.state().commands.is_empty(), "{}", sample.file_name);
         }
     }
+}
+
+#[test]
+fn the_diagnosis_looks_as_it_did() {
+    let mut harness = Harness::builder()
+        .with_size([964.0, 808.0])
+        .renderer(Software::default())
+        .with_theme(egui::Theme::Light)
+        .with_context_setup(ui::theme::install)
+        .build_ui_state(Bench::ui, diagnosing(made_up(one_finding_a_plot())));
+    harness.run_steps(6);
+    harness.snapshot("diagnosis_stations");
 }

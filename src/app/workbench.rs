@@ -308,8 +308,7 @@ impl Workbench {
             Command::Redo => self.step_history(History::redo),
             Command::Solve => self.start_solving(),
             Command::CancelSolve => self.solving.cancel(),
-            Command::Diagnose if self.results_are_current() => self.start_diagnosing(),
-            Command::Diagnose => self.start_solving(),
+            Command::Diagnose => self.diagnose_again(),
             Command::CancelDiagnosis => self.diagnosis.cancel(),
             Command::RankReadings => self.start_ranking(),
             Command::CancelReadings => self.readings.cancel(),
@@ -554,6 +553,15 @@ impl Workbench {
         Some((Arc::clone(&document.session), Arc::clone(problem), Arc::clone(results)))
     }
 
+    /// Results that are out of date are made anew first; the diagnosis follows them.
+    fn diagnose_again(&mut self) {
+        if self.results_are_current() {
+            self.start_diagnosing();
+        } else {
+            self.start_solving();
+        }
+    }
+
     fn start_diagnosing(&mut self) {
         let Some((session, problem, results)) = self.case() else { return };
         self.diagnosis.start("diagnose", &self.wake, results.revision, move |watch| {
@@ -564,8 +572,7 @@ impl Workbench {
     fn start_ranking(&mut self) {
         let Some((session, problem, results)) = self.case() else { return };
         self.readings.start("try conventions", &self.wake, results.revision, move |watch| {
-            let case = Case { session: &session, problem: &problem, results: &results.methods };
-            diagnose::convention::examine(case, watch).map(|(_, readings)| readings)
+            diagnose::convention::rank(&session, &problem, watch)
         });
     }
 

@@ -15,7 +15,7 @@ pub const OUT_OF_DATE: &str = "out of date";
 /// Toggles the reasons of the verdict.
 pub const WHY: &str = "Why?";
 /// No method gave a result.
-pub const NO_METHOD: &str = "No method could compute a calibration; each card says what it needs.";
+pub const NO_METHOD: &str = "No method could compute a calibration; the reasons stand below.";
 /// Errors relative to the first station, as in the paper.
 pub const FROM_FIRST: &str = "from first";
 /// The same, on hover.

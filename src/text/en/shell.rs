@@ -139,7 +139,7 @@ pub fn solving_progress(done: usize, total: usize) -> String {
 /// Next step where something was found.
 #[must_use]
 pub fn next_findings(number: usize) -> String {
-    format!("See the {}", count(number, "finding"))
+    if number == 1 { "See the finding".to_owned() } else { format!("See the {number} findings") }
 }
 
 /// Progress of the diagnosis.

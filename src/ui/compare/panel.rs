@@ -24,7 +24,7 @@ const MIN_PAPER_CARD_WIDTH: f32 = 560.0;
 /// Below this width the plots stand above each other.
 const PLOTS_SIDE_BY_SIDE_FROM: f32 = 720.0;
 /// Least height of a plot's card.
-const MIN_PLOT_HEIGHT: f32 = 250.0;
+const MIN_PLOT_HEIGHT: f32 = 212.0;
 /// Greatest height of a plot's card.
 const MAX_PLOT_HEIGHT: f32 = 380.0;
 /// Room kept below the plots for the difference table.

@@ -112,7 +112,6 @@ fn ellipses(ui: &mut Ui, height: f32, uncertainty: &Uncertainty) {
     // Half of the smaller side of a view, and some room around the longest axis.
     let (left, right) = area.split_left_right_at_fraction(0.5);
     let (left, right) = (left.with_max_x(left.right() - 4.0), right.with_min_x(right.left() + 4.0));
-    #[expect(clippy::cast_possible_truncation, reason = "screen coordinates")]
     let scale = f64::from(left.width().min(left.height()) * 0.40) / weakest_mm.max(1e-9);
     for (place, axes, names) in [(left, [0, 1], ["x", "y"]), (right, [0, 2], ["x", "z"])] {
         let direction = axes.map(|axis| weakest[axis] * weakest_mm * scale);

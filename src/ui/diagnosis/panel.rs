@@ -13,7 +13,7 @@ use super::{accuracy, findings, plan, plots, validation};
 /// From this width on, points, the cards stand beside each other.
 const SIDE_BY_SIDE_FROM: f32 = 840.0;
 /// Least heights of the rows of cards, points; where the window is higher, they share what is left.
-const ROW_HEIGHTS: [f32; 3] = [276.0, 208.0, 232.0];
+const ROW_HEIGHTS: [f32; 3] = [272.0, 204.0, 226.0];
 /// Heights of the cards where they stand above each other: findings, evidence, influence, halves and normality,
 /// accuracy, next poses.
 const STACKED_HEIGHTS: [f32; 6] = [280.0, 280.0, 220.0, 220.0, 232.0, 240.0];

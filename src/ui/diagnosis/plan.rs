@@ -49,7 +49,7 @@ pub fn show(ui: &mut Ui, height: f32, view: &View<'_>, commands: &mut Vec<Comman
         limits(ui, view, commands);
         match (view.plan.value, plan) {
             (_, Some(plan)) => poses(ui, view, plan),
-            (Some(Err(refusal)), None) => widgets::nothing(ui, &refusal.to_string()),
+            (Some(Err(refusal)), None) if view.solution().is_some() => widgets::nothing(ui, &refusal.to_string()),
             _ if view.plan.progress.is_some() => widgets::nothing(ui, words::PLANNING),
             _ => widgets::nothing(ui, words::NO_PLAN),
         }

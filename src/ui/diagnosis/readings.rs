@@ -33,6 +33,8 @@ impl Scale {
         let logs = || fits.iter().map(|fit| fit.rms_mm.max(1e-6).log10()).filter(|log| log.is_finite());
         let low = logs().fold(f64::INFINITY, f64::min);
         let high = logs().fold(f64::NEG_INFINITY, f64::max);
+        // No way leaves anything to compare.
+        let low = if low.is_finite() { low } else { 0.0 };
         // The least bar keeps a length, too.
         Self { low: (low - 0.3).floor(), high: high.max(low + 0.5) }
     }

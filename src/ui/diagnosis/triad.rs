@@ -86,7 +86,9 @@ fn picture(ui: &Ui, place: Rect, in_flange: Vec3) {
     for (axis, name) in [(Vec3::x(), "x"), (Vec3::y(), "y"), (Vec3::z(), "z")] {
         arrow(&painter, centre, at(axis), Stroke::new(1.5, palette.text_dim));
         let font = FontId::proportional(theme::BODY_SIZE);
-        painter.text(at(axis * 1.16), Align2::CENTER_CENTER, name, font, palette.text_dim);
+        // Beside the tip, where an arrow along the axis does not run over it.
+        let beside = projected(axis).normalized().rot90() * 9.0;
+        painter.text(at(axis) + beside, Align2::CENTER_CENTER, name, font, palette.text_dim);
     }
     // Which way along it makes no difference, so it points both ways.
     let direction = in_flange.try_normalize(0.0).unwrap_or_else(Vec3::zeros) * 1.32;

@@ -25,7 +25,12 @@ fn validation<'a>(view: &View<'a>) -> Option<&'a Validation> {
 /// Says why there is nothing to show: not yet, or never.
 fn missing(ui: &mut Ui, view: &View<'_>, reason: &str) {
     let is_running = view.diagnosis.value.is_none() && view.diagnosis.progress.is_some();
-    widgets::nothing(ui, if is_running { words::EXAMINING } else { reason });
+    let sentence = match view.solution() {
+        None => words::NO_SOLUTION,
+        Some(_) if is_running => words::EXAMINING,
+        Some(_) => reason,
+    };
+    widgets::nothing(ui, sentence);
 }
 
 /// A test's probability with the digits that matter.

@@ -1,6 +1,6 @@
 //! Numbers: tabular figures, fixed decimals, the true minus sign, right-aligned.
 
-use egui::{Align, Layout, Response, RichText, Sense, Ui, UiBuilder, vec2};
+use egui::{Align, Label, Layout, Response, RichText, Sense, Ui, UiBuilder, vec2};
 
 use crate::ui::theme;
 
@@ -49,11 +49,18 @@ pub fn value_row(ui: &mut Ui, label: &str, value: impl Into<String>) -> Response
 /// A row of a list: a dim label at the left, and what `right` puts there, from right to left.
 pub fn split_row<R>(ui: &mut Ui, label: &str, right: impl FnOnce(&mut Ui) -> R) -> R {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), theme::ROW_HEIGHT), Sense::hover());
-    let child = |layout| UiBuilder::new().max_rect(rect).layout(layout);
-    let mut left_side = ui.new_child(child(Layout::left_to_right(Align::Center)));
-    left_side.label(theme::dim(ui, label));
-    right(&mut ui.new_child(child(Layout::right_to_left(Align::Center))))
+    let child = |rect, layout| UiBuilder::new().max_rect(rect).layout(layout);
+    let mut right_side = ui.new_child(child(rect, Layout::right_to_left(Align::Center)));
+    let answer = right(&mut right_side);
+    // The value is never covered: a label without room is cut, and shows in full on hover.
+    let free = rect.with_max_x((right_side.min_rect().left() - LABEL_GAP).max(rect.left()));
+    let mut left_side = ui.new_child(child(free, Layout::left_to_right(Align::Center)));
+    left_side.add(Label::new(theme::dim(ui, label)).truncate());
+    answer
 }
+
+/// Least gap between a row's label and what stands at its right, points.
+const LABEL_GAP: f32 = 4.0;
 
 #[cfg(test)]
 mod tests {
