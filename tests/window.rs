@@ -8,6 +8,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use handeye::app::{Command, NoticeKind, Workbench};
+use handeye::diagnose::Severity;
 use handeye::session::{self, samples};
 use handeye::text::start::{open_sample, sample_lesson};
 use handeye::text::{poses as pose_words, shell as shell_words, start as start_words};
@@ -71,11 +72,30 @@ fn the_start_page_shows_every_sample() {
 
 #[test]
 fn a_click_on_a_sample_opens_and_solves_it() {
-    let harness = window_with("few-rotations.json");
+    let mut harness = window_with("few-rotations.json");
     let document = workbench(&harness).document().expect("the sample is open");
     assert_eq!(document.session.stations.len(), 8);
     assert!(workbench(&harness).results_are_current());
-    harness.get_by_label(shell_words::NEXT_ARCS);
+    // Its rotations are too few, so the way leads to what is said about that.
+    let findings = &workbench(&harness).current_diagnosis().expect("diagnosed").findings;
+    let num_serious = findings.iter().filter(|finding| finding.severity != Severity::Note).count();
+    assert!(num_serious > 0);
+    click(&mut harness, &shell_words::next_findings(num_serious));
+    assert_eq!(harness.state().shell().step(), Step::Diagnosis);
+}
+
+#[test]
+fn where_nothing_is_wrong_the_way_leads_along_the_rail() {
+    let mut harness = window_with("clean-sweeps.json");
+    for (next, step) in [
+        (shell_words::NEXT_ARCS, Step::Arcs),
+        (shell_words::NEXT_POSES, Step::Poses),
+        (shell_words::NEXT_COMPARE, Step::Compare),
+        (shell_words::NEXT_DIAGNOSIS, Step::Diagnosis),
+    ] {
+        click(&mut harness, next);
+        assert_eq!(harness.state().shell().step(), step);
+    }
 }
 
 #[test]

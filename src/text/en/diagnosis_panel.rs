@@ -94,11 +94,7 @@ pub fn same_as(names: &str) -> String {
     format!("= {names}")
 }
 
-/// Title of the evidence without a finding selected.
-pub const EVIDENCE: &str = "Evidence";
-/// A finding without a plot.
-pub const NO_PLOT: &str = "The sentence says it all; there is nothing to plot.";
-/// In place of the evidence where nothing was found: left-out errors.
+/// Title where a finding has no plot of its own, and where there is none: left-out errors.
 pub const STATIONS_AGREE: &str = "Each station against the others";
 /// Without left-out errors.
 pub const TOO_FEW_TO_LEAVE_OUT: &str = "Too few stations to hold each against the others.";

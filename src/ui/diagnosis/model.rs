@@ -2,8 +2,8 @@
 
 use crate::app::{Progress, Study, Workbench};
 use crate::calibrate::validation::Bootstrap;
-use crate::calibrate::{MethodResult, Solution, best_available};
-use crate::diagnose::{Diagnosis, Finding, Plot, ReadingFit, Remedy, StationBar};
+use crate::calibrate::{MethodResult, Solution, StationSolution, best_available};
+use crate::diagnose::{Diagnosis, Fault, Finding, Plot, ReadingFit, Remedy, StationBar};
 use crate::geometry::PoseConvention;
 use crate::plan::{Limits, Plan, PlanRefusal, PlannedStation};
 use crate::session::Session;
@@ -113,15 +113,21 @@ pub enum Shown {
     Readings,
 }
 
-/// The plot where nothing was found: how far each station is off the others. `None` with too few stations for that.
+/// The plot where a finding has none of its own, or where there is none: how far each station is off the others.
+/// `None` with too few stations for that.
 #[must_use]
-pub fn agreeing_stations(solution: &Solution) -> Option<Plot> {
-    let bar = |station: &crate::calibrate::StationSolution| {
+pub fn stations(solution: &Solution, fault: Option<&Fault>) -> Option<Plot> {
+    let accused: &[usize] = match fault {
+        Some(Fault::TwinPoses { station_idxs, .. }) => station_idxs,
+        Some(Fault::WrongSides { station_idxs }) => station_idxs,
+        _ => &[],
+    };
+    let bar = |station: &StationSolution| {
         station.leave_one_out_mm.map(|error_mm| StationBar {
             station_idx: station.station_idx,
             label: station.label.clone(),
             error_mm,
-            is_accused: false,
+            is_accused: accused.contains(&station.station_idx),
         })
     };
     let bars: Vec<StationBar> = solution.stations.iter().filter_map(bar).collect();

@@ -4,7 +4,7 @@ use egui::{Color32, Frame, Id, Margin, ProgressBar, Role, Stroke, Ui, WidgetInfo
 use egui_plot::MarkerShape;
 
 use crate::app::Command;
-use crate::diagnose::{CurveAxis, Finding, Plot, StationBar};
+use crate::diagnose::{CurveAxis, Plot, StationBar};
 use crate::text::diagnosis as fault_words;
 use crate::text::diagnosis_panel as words;
 use crate::ui::charts::{self, Chart, Extent, LegendEntry, LegendGlyph};
@@ -26,21 +26,19 @@ pub fn evidence(ui: &mut Ui, height: f32, view: &View<'_>, context: &mut PanelCo
         }
         Shown::Finding(idx) => view.findings().get(idx),
     };
-    let agreeing = || view.solution().and_then(model::agreeing_stations);
-    let (plot, title) = match found {
-        Some(Finding { evidence, .. }) => (evidence.plot.clone(), evidence.plot.as_ref().map(fault_words::plot_title)),
-        None => (agreeing(), None),
-    };
-    let title = title.unwrap_or(if found.is_some() { words::EVIDENCE } else { words::STATIONS_AGREE });
+    let evidence = found.and_then(|finding| finding.evidence.plot.as_ref());
+    let title = evidence.map_or(words::STATIONS_AGREE, fault_words::plot_title);
+    // Where there is nothing of its own to show, how far each station is off the others puts the finding in scale.
+    let of_all = || view.solution().and_then(|solution| model::stations(solution, found.map(|finding| &finding.fault)));
+    let plot = evidence.cloned().or_else(of_all);
     let right = |ui: &mut Ui| {
         if matches!(plot, Some(Plot::Readings(_))) {
             ui.label(theme::dim(ui, words::READINGS_HINT));
         }
     };
-    widgets::card_with_height(ui, title, height, right, |ui| match (&plot, found) {
-        (Some(plot), _) => show(ui, plot, view, context, is_fitted),
-        (None, Some(_)) => widgets::nothing(ui, words::NO_PLOT),
-        (None, None) => {
+    widgets::card_with_height(ui, title, height, right, |ui| match &plot {
+        Some(plot) => show(ui, plot, view, context, is_fitted),
+        None => {
             let has_solution = view.solution().is_some();
             widgets::nothing(ui, if has_solution { words::TOO_FEW_TO_LEAVE_OUT } else { words::NO_SOLUTION });
         }
