@@ -89,6 +89,13 @@ const BROKEN: &[(&str, &str, &[&str])] = &[
     ("\"convention\": \"kuka-abc\"", "\"convention\": \"kuka\"", &["stations[1].captures[0].base_from_flange.convention: found \"kuka\"", "\"kuka-abc\""]),
     (", \"convention\": \"kuka-abc\"", "", &["stations[1].captures[0].base_from_flange.convention: found nothing, expected \"fanuc-wpr\""]),
     ("\"euler_deg\": [180, 10, 20]", "\"euler_deg\": [180, 1e7, 20]", &["stations[1].captures[0].base_from_flange.euler_deg[1]: found 10000000, expected an angle in degrees"]),
+    ("\"written\": { \"euler_deg\": [106.26020470831196, 0, 0], \"convention\": \"staubli-rxryrz\" }", "\"written\": \"staubli-rxryrz\"", &["stations[0].captures[1].base_from_flange.written: found \"staubli-rxryrz\", expected an object with euler_deg and convention"]),
+    ("\"euler_deg\": [106.26020470831196, 0, 0], ", "", &["stations[0].captures[1].base_from_flange.written.euler_deg: found nothing, expected a list of 3 angles"]),
+    ("[106.26020470831196, 0, 0]", "[106.26020470831196, 0]", &["base_from_flange.written.euler_deg: found a list of 2, expected a list of 3 numbers"]),
+    ("[106.26020470831196, 0, 0]", "[106.26020470831196, null, 0]", &["base_from_flange.written.euler_deg[1]: found null"]),
+    (", \"convention\": \"staubli-rxryrz\"", "", &["base_from_flange.written.convention: found nothing, expected \"fanuc-wpr\""]),
+    ("\"convention\": \"staubli-rxryrz\"", "\"convention\": \"staubli\"", &["base_from_flange.written.convention: found \"staubli\""]),
+    ("\"quaternion_wxyz\": [0.6, 0.8, 0, 0],\n", "\"euler_deg\": [1, 2, 3], \"convention\": \"fanuc-wpr\",\n", &["base_from_flange.written: found both euler_deg and written, expected written only beside"]),
     ("{ \"base_from_flange\": { \"translation_mm\": [1, 2, 3], \"quaternion_wxyz\": [0.6, 0.8, 0, 0] },", "{", &["stations[0].captures[0].base_from_flange: found nothing"]),
     ("\"z_mm\": [0.25, null]", "\"z_mm\": [0.25]", &["stations[0].captures[0].profile.z_mm: found a list of 1, expected a list of 2, as many as x_mm has"]),
     ("\"z_mm\": [0.25, null]", "\"z_mm\": [0.25, -1e6]", &["stations[0].captures[0].profile.z_mm[1]: found -1000000"]),
@@ -104,7 +111,7 @@ const BROKEN: &[(&str, &str, &[&str])] = &[
     ("\"error_from_first_mm\": [[0, 0, 0], [3, 3, 3]]", "\"error_from_first_mm\": [[0, 0, 0], [3, 3]]", &["published.error_from_first_mm[1]: found a list of 2"]),
     ("\"ball_in_base_mm\": [0, 0, 0] }", "\"ball\": [0, 0, 0] }", &["truth.ball_in_base_mm: found nothing"]),
     ("\"truth\": { \"flange_from_sensor\":", "\"truth\": { \"sensor\":", &["truth.flange_from_sensor: found nothing"]),
-    ("\"truth\": {", "\"truth\": [", &["line 24, column 34: found `: { \"translation_mm\"", "expected JSON: expected `,` or `]`"]),
+    ("\"truth\": {", "\"truth\": [", &["line 25, column 34: found `: { \"translation_mm\"", "expected JSON: expected `,` or `]`"]),
     ("\"notes\": \"line 1\\nline 2\",", "\"notes\": \"line 1\\nline 2\"", &["line 6, column 3: found `\"robot\"", "expected JSON: expected `,` or `}`"]),
 ];
 
@@ -153,6 +160,12 @@ fn the_valid_session_is_read_as_written() {
     assert_eq!(session.stations[0].captures[1].reading, Reading::Point(Vec3::new(4.0, 5.0, 6.0)));
     let kuka = PoseConvention::by_id("kuka-abc").expect("known").rotation_from_angles_deg([180.0, 10.0, 20.0]);
     assert!(session.stations[1].captures[0].base_from_flange.rotation().angle_to(&kuka) < 1e-12);
+    let written = |station: usize, capture: usize| {
+        session.stations[station].captures[capture].written_angles.map(|w| (w.angles_deg, w.convention.id))
+    };
+    assert_eq!(written(0, 0), None);
+    assert_eq!(written(0, 1), Some(([106.260_204_708_311_96, 0.0, 0.0], "staubli-rxryrz")));
+    assert_eq!(written(1, 0), Some(([180.0, 10.0, 20.0], "kuka-abc")));
     assert_eq!(parse(to_json(&session).as_bytes(), "again.json"), Ok(session));
 }
 
@@ -208,6 +221,7 @@ fn unknown_fields_survive_at_every_level() {
         "\"label\": ",
         "\"base_from_flange\": { \"translation_mm\": [1, 2, 4]",
         "\"translation_mm\": [1, 2, 3]",
+        "\"euler_deg\": [106",
         "\"x_mm\": [-1",
         "\"caption\": ",
         "\"flange_from_sensor\": ",
@@ -238,6 +252,9 @@ fn the_text_is_stable_and_readable() {
         "    { \"label\": \"first\", \"enabled\": false, \"side\": \"+\",",
         "      \"captures\": [",
         "            \"z_mm\": [0.25, null]",
+        "        { \"base_from_flange\": { \"translation_mm\": [1, 2, 4], \"quaternion_wxyz\": [0.6, 0.8, 0, 0], \
+         \"written\": { \"euler_deg\": [106.26020470831196, 0, 0], \"convention\": \"staubli-rxryrz\" } }, \
+         \"step\": -0.5, \"point_mm\": [4, 5, 6] }",
     ] {
         assert!(saved.lines().any(|found| found == line), "{line:?} is no line of\n{saved}");
     }

@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use handeye::calibrate::{Mount, Side, SideChoice};
 use handeye::geometry::{Base, Flange, PoseConvention, Profile, Transform, Vec3, so3};
-use handeye::session::{Capture, Published, Reading, Robot, Sensor, Session, Station, Target, Truth, parse, to_json};
+use handeye::session::{
+    Capture, Published, Reading, Robot, Sensor, Session, Station, Target, Truth, WrittenAngles, parse, to_json,
+};
 use proptest::prelude::*;
 
 /// A small session with every kind of field.
@@ -33,9 +35,17 @@ fn reading() -> impl Strategy<Value = Reading> {
 }
 
 fn station() -> impl Strategy<Value = Station> {
-    let capture = (pose(), reading(), prop::option::of(-1e3..1e3)).prop_map(|(base_from_flange, reading, step_mm)| {
-        Capture { base_from_flange, written_angles: None, reading, step_mm, unknown: serde_json::Map::new() }
-    });
+    let written = (prop::array::uniform3(-36_000.0..36_000.0), 0..PoseConvention::ALL.len())
+        .prop_map(|(angles_deg, idx)| WrittenAngles { angles_deg, convention: &PoseConvention::ALL[idx] });
+    let capture = (pose(), prop::option::of(written), reading(), prop::option::of(-1e3..1e3)).prop_map(
+        |(base_from_flange, written_angles, reading, step_mm)| Capture {
+            base_from_flange,
+            written_angles,
+            reading,
+            step_mm,
+            unknown: serde_json::Map::new(),
+        },
+    );
     let side =
         prop_oneof![Just(SideChoice::Auto), Just(SideChoice::Given(Side::Plus)), Just(SideChoice::Given(Side::Minus))];
     (any::<bool>(), side, prop::collection::vec(capture, 1..4)).prop_map(|(enabled, side, captures)| Station {

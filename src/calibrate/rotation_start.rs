@@ -40,6 +40,14 @@ impl PoseGeometry {
     /// # Errors
     /// [`SolveError::NoRotation`] and [`SolveError::RotationsAboutOneAxis`] if no solution is unique.
     pub fn new(poses: &[Rigid]) -> Result<Self, SolveError> {
+        Self::with_least_movement(poses, NO_ROTATION)
+    }
+
+    /// The same with another limit on the mean squared rotation (rad²) about an axis.
+    ///
+    /// # Errors
+    /// As [`PoseGeometry::new`].
+    pub fn with_least_movement(poses: &[Rigid], least: f64) -> Result<Self, SolveError> {
         #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 poses")]
         let scale = 1.0 / poses.len() as f64;
         let rotations_inverse: Vec<Mat3> =
@@ -62,10 +70,10 @@ impl PoseGeometry {
         let common_axis_in_flange = (mean_rotation_inverse * eigen.eigenvectors.column(order[0]))
             .try_normalize(1e-9)
             .unwrap_or_else(Vec3::zeros);
-        if axis_movements[2] < NO_ROTATION {
+        if axis_movements[2] < least {
             return Err(SolveError::NoRotation { span_deg: rotation_span(poses).to_degrees() });
         }
-        if axis_movements[0] < NO_ROTATION {
+        if axis_movements[0] < least {
             return Err(SolveError::RotationsAboutOneAxis {
                 axis_x: common_axis_in_flange.x,
                 axis_y: common_axis_in_flange.y,
@@ -223,7 +231,9 @@ impl ReducedProblem<'_> {
         self.poses.ball_covariance * u
     }
 
-    fn cost(&self, rotation: &UnitQuaternion<f64>) -> f64 {
+    /// The sum of squares for a rotation, mm².
+    #[must_use]
+    pub fn cost(&self, rotation: &UnitQuaternion<f64>) -> f64 {
         let matrix = rotation.to_rotation_matrix();
         let u = self.ball_by_rotation * Vec9::from_column_slice(matrix.matrix().as_slice()) + self.ball_constant;
         self.constant + 2.0 * matrix.matrix().dot(&self.offset_by_centre) - u.dot(&(self.poses.ball_covariance * u))

@@ -64,6 +64,7 @@ pub fn apply(session: &Session, remedy: &Remedy) -> Session {
                 let Some(station) = mended.stations.get_mut(*to) else { continue };
                 for (capture, other) in station.captures.iter_mut().zip(&source.captures) {
                     capture.base_from_flange = other.base_from_flange;
+                    capture.written_angles = other.written_angles;
                 }
             }
         }
@@ -75,6 +76,7 @@ pub fn apply(session: &Session, remedy: &Remedy) -> Session {
             for capture in mended.stations.iter_mut().skip(*from_station_idx).flat_map(|station| &mut station.captures)
             {
                 capture.base_from_flange = Transform::from_rigid(*capture.base_from_flange.rigid() * tool_from_flange);
+                capture.written_angles = None;
             }
         }
     }

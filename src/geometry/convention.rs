@@ -1,7 +1,6 @@
-//! How robot makers write an orientation as three numbers. Degrees appear here and nowhere below.
-//!
-//! Every convention of three angles is a product of rotations about moving axes, written in the order of the product;
-//! fixed-axis XYZ (a, b, c) is moving-axis ZYX (c, b, a), so it needs no form of its own.
+//! How robot makers write an orientation as three numbers: the orders of the angles, and the makers' names for them.
+
+use std::fmt;
 
 use nalgebra::UnitQuaternion;
 
@@ -9,19 +8,132 @@ use super::{Mat3, Vec3, so3};
 
 /// A coordinate axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Axis {
+pub enum Axis {
+    /// x.
     X = 0,
+    /// y.
     Y = 1,
+    /// z.
     Z = 2,
 }
 
-/// How the three numbers make a rotation.
+use Axis::{X, Y, Z};
+
+/// How three numbers make a rotation.
+///
+/// Each order of axes has two readings, and they are different ones: about moving axes, R = `R_first(a)` `R_second(b)`
+/// `R_third(c)`, and about fixed axes, R = `R_third(c)` `R_second(b)` `R_first(a)`. So "intrinsic ZYX" is "extrinsic XYZ"
+/// with its numbers listed backwards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Form {
-    /// `R = R_first(a) R_second(b) R_third(c)`; the maker lists (a, b, c), or (c, b, a) where `reversed`.
-    Euler { axes: [Axis; 3], reversed: bool },
+pub enum AngleOrder {
+    /// Rotations about these axes one after the other, the axes moving along.
+    Intrinsic([Axis; 3]),
+    /// Rotations about these axes one after the other, the axes standing still.
+    Extrinsic([Axis; 3]),
     /// Axis times angle.
     RotationVector,
+}
+
+impl AngleOrder {
+    /// All readings of three numbers that there are.
+    pub const ALL: [Self; 25] = {
+        let axes = [
+            [Z, Y, X],
+            [X, Y, Z],
+            [X, Z, Y],
+            [Y, X, Z],
+            [Y, Z, X],
+            [Z, X, Y],
+            [Z, Y, Z],
+            [Z, X, Z],
+            [X, Y, X],
+            [X, Z, X],
+            [Y, X, Y],
+            [Y, Z, Y],
+        ];
+        let mut all = [Self::RotationVector; 25];
+        let mut idx = 0;
+        while idx < axes.len() {
+            all[2 * idx] = Self::Extrinsic(axes[idx]);
+            all[2 * idx + 1] = Self::Intrinsic(axes[idx]);
+            idx += 1;
+        }
+        all
+    };
+
+    /// The same rotations with the three numbers listed backwards; a rotation vector has no such twin.
+    #[must_use]
+    pub const fn backwards(self) -> Self {
+        match self {
+            Self::Intrinsic([i, j, k]) => Self::Extrinsic([k, j, i]),
+            Self::Extrinsic([i, j, k]) => Self::Intrinsic([k, j, i]),
+            Self::RotationVector => Self::RotationVector,
+        }
+    }
+
+    /// Whether the first and the third rotation are about the same axis; the middle angle then runs from 0 to π, otherwise
+    /// from −π/2 to π/2.
+    #[must_use]
+    pub const fn is_proper_euler(self) -> bool {
+        match self {
+            Self::Intrinsic([i, _, k]) | Self::Extrinsic([i, _, k]) => i as u8 == k as u8,
+            Self::RotationVector => false,
+        }
+    }
+
+    /// The rotation that three numbers (rad) stand for.
+    #[must_use]
+    pub fn rotation_from_angles(self, angles: [f64; 3]) -> UnitQuaternion<f64> {
+        let [a, b, c] = angles;
+        match self {
+            Self::Intrinsic([i, j, k]) => about(i, a) * about(j, b) * about(k, c),
+            Self::Extrinsic([i, j, k]) => about(k, c) * about(j, b) * about(i, a),
+            Self::RotationVector => so3::exp(Vec3::from(angles)),
+        }
+    }
+
+    /// The three numbers (rad) of a rotation. In gimbal lock the first factor of the product gets 0.
+    #[must_use]
+    pub fn angles_from_rotation(self, rotation: &UnitQuaternion<f64>) -> [f64; 3] {
+        match self {
+            Self::Intrinsic(axes) => euler_angles(axes, rotation),
+            Self::Extrinsic([i, j, k]) => {
+                let [c, b, a] = euler_angles([k, j, i], rotation);
+                [a, b, c]
+            }
+            Self::RotationVector => so3::log(rotation).into(),
+        }
+    }
+
+    /// The other three numbers (rad) that stand for the same rotation, the first and third within ±π. No rotation vector
+    /// has a direction without length, so there the identity is its own twin.
+    #[must_use]
+    pub fn second_angles(self, angles: [f64; 3]) -> [f64; 3] {
+        use std::f64::consts::{PI, TAU};
+        let [a, b, c] = angles;
+        let turned = |angle: f64| if angle > 0.0 { angle - PI } else { angle + PI };
+        match self {
+            Self::RotationVector => {
+                let angle = Vec3::from(angles).norm();
+                if angle > 0.0 { angles.map(|v| v * (1.0 - TAU / angle)) } else { angles }
+            }
+            _ if self.is_proper_euler() => [turned(a), -b, turned(c)],
+            _ => [turned(a), if b < 0.0 { -PI - b } else { PI - b }, turned(c)],
+        }
+    }
+}
+
+/// As engineers say it: "extrinsic XYZ", "rotation vector".
+impl fmt::Display for AngleOrder {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (word, axes) = match self {
+            Self::Intrinsic(axes) => ("intrinsic", axes),
+            Self::Extrinsic(axes) => ("extrinsic", axes),
+            Self::RotationVector => return formatter.write_str("rotation vector"),
+        };
+        let [i, j, k] = axes;
+        write!(formatter, "{word} {i:?}{j:?}{k:?}")
+    }
 }
 
 /// A maker's way to write an orientation.
@@ -35,43 +147,40 @@ pub struct PoseConvention {
     pub angle_names: [&'static str; 3],
     /// The rotation spelt out.
     pub formula: &'static str,
-    form: Form,
+    /// How the three numbers make a rotation, in the maker's order.
+    pub order: AngleOrder,
 }
 
-use Axis::{X, Y, Z};
-
-const fn euler(
+const fn maker(
     id: &'static str,
     label: &'static str,
     angle_names: [&'static str; 3],
     formula: &'static str,
-    axes: [Axis; 3],
-    reversed: bool,
+    order: AngleOrder,
 ) -> PoseConvention {
-    PoseConvention { id, label, angle_names, formula, form: Form::Euler { axes, reversed } }
+    PoseConvention { id, label, angle_names, formula, order }
 }
+
+const EXTRINSIC_XYZ: AngleOrder = AngleOrder::Extrinsic([X, Y, Z]);
+const INTRINSIC_ZYX: AngleOrder = AngleOrder::Intrinsic([Z, Y, X]);
+const INTRINSIC_XYZ: AngleOrder = AngleOrder::Intrinsic([X, Y, Z]);
+const INTRINSIC_ZYZ: AngleOrder = AngleOrder::Intrinsic([Z, Y, Z]);
 
 impl PoseConvention {
     /// All conventions known, the default first.
     pub const ALL: &'static [Self] = &[
-        euler("fanuc-wpr", "FANUC W P R", ["W", "P", "R"], "Rz(R) Ry(P) Rx(W)", [Z, Y, X], true),
-        euler("abb-ezeyex", "ABB EZ EY EX", ["EZ", "EY", "EX"], "Rz(EZ) Ry(EY) Rx(EX)", [Z, Y, X], false),
-        euler("kuka-abc", "KUKA A B C", ["A", "B", "C"], "Rz(A) Ry(B) Rx(C)", [Z, Y, X], false),
-        PoseConvention {
-            id: "ur-rotvec",
-            label: "UR RX RY RZ",
-            angle_names: ["RX", "RY", "RZ"],
-            formula: "rotation vector",
-            form: Form::RotationVector,
-        },
-        euler("yaskawa-rxryrz", "Yaskawa Rx Ry Rz", ["Rx", "Ry", "Rz"], "Rz(Rz) Ry(Ry) Rx(Rx)", [Z, Y, X], true),
-        euler("staubli-rxryrz", "Stäubli Rx Ry Rz", ["Rx", "Ry", "Rz"], "Rx(Rx) Ry(Ry) Rz(Rz)", [X, Y, Z], false),
-        euler("kawasaki-oat", "Kawasaki O A T", ["O", "A", "T"], "Rz(O) Ry(A) Rz(T)", [Z, Y, Z], false),
-        euler("mitsubishi-abc", "Mitsubishi A B C", ["A", "B", "C"], "Rz(C) Ry(B) Rx(A)", [Z, Y, X], true),
-        euler("comau-aer", "Comau A E R", ["A", "E", "R"], "Rz(A) Ry(E) Rz(R)", [Z, Y, Z], false),
-        euler("denso-rxryrz", "Denso RX RY RZ", ["RX", "RY", "RZ"], "Rz(RZ) Ry(RY) Rx(RX)", [Z, Y, X], true),
-        euler("nachi-rpy", "Nachi r p y", ["r", "p", "y"], "Rz(r) Ry(p) Rx(y)", [Z, Y, X], false),
-        euler("epson-uvw", "Epson U V W", ["U", "V", "W"], "Rz(U) Ry(V) Rx(W)", [Z, Y, X], false),
+        maker("fanuc-wpr", "FANUC W P R", ["W", "P", "R"], "Rz(R) Ry(P) Rx(W)", EXTRINSIC_XYZ),
+        maker("abb-ezeyex", "ABB EZ EY EX", ["EZ", "EY", "EX"], "Rz(EZ) Ry(EY) Rx(EX)", INTRINSIC_ZYX),
+        maker("kuka-abc", "KUKA A B C", ["A", "B", "C"], "Rz(A) Ry(B) Rx(C)", INTRINSIC_ZYX),
+        maker("ur-rotvec", "UR RX RY RZ", ["RX", "RY", "RZ"], "rotation vector", AngleOrder::RotationVector),
+        maker("yaskawa-rxryrz", "Yaskawa Rx Ry Rz", ["Rx", "Ry", "Rz"], "Rz(Rz) Ry(Ry) Rx(Rx)", EXTRINSIC_XYZ),
+        maker("staubli-rxryrz", "Stäubli Rx Ry Rz", ["Rx", "Ry", "Rz"], "Rx(Rx) Ry(Ry) Rz(Rz)", INTRINSIC_XYZ),
+        maker("kawasaki-oat", "Kawasaki O A T", ["O", "A", "T"], "Rz(O) Ry(A) Rz(T)", INTRINSIC_ZYZ),
+        maker("mitsubishi-abc", "Mitsubishi A B C", ["A", "B", "C"], "Rz(C) Ry(B) Rx(A)", EXTRINSIC_XYZ),
+        maker("comau-aer", "Comau A E R", ["A", "E", "R"], "Rz(A) Ry(E) Rz(R)", INTRINSIC_ZYZ),
+        maker("denso-rxryrz", "Denso RX RY RZ", ["RX", "RY", "RZ"], "Rz(RZ) Ry(RY) Rx(RX)", EXTRINSIC_XYZ),
+        maker("nachi-rpy", "Nachi r p y", ["r", "p", "y"], "Rz(r) Ry(p) Rx(y)", INTRINSIC_ZYX),
+        maker("epson-uvw", "Epson U V W", ["U", "V", "W"], "Rz(U) Ry(V) Rx(W)", INTRINSIC_ZYX),
     ];
 
     /// The convention that a session file names.
@@ -86,27 +195,21 @@ impl PoseConvention {
         &Self::ALL[0]
     }
 
+    /// The makers that write an orientation in this order.
+    pub fn of_order(order: AngleOrder) -> impl Iterator<Item = &'static Self> {
+        Self::ALL.iter().filter(move |convention| convention.order == order)
+    }
+
     /// The rotation that the three numbers (degrees, in the maker's order) stand for.
     #[must_use]
     pub fn rotation_from_angles_deg(&self, angles_deg: [f64; 3]) -> UnitQuaternion<f64> {
-        let angles = angles_deg.map(f64::to_radians);
-        match self.form {
-            Form::RotationVector => so3::exp(Vec3::from(angles)),
-            Form::Euler { axes, reversed } => {
-                let [a, b, c] = in_product_order(angles, reversed);
-                about(axes[0], a) * about(axes[1], b) * about(axes[2], c)
-            }
-        }
+        self.order.rotation_from_angles(angles_deg.map(f64::to_radians))
     }
 
     /// The three numbers (degrees, in the maker's order) of a rotation. In gimbal lock the first factor gets 0.
     #[must_use]
     pub fn angles_deg_from_rotation(&self, rotation: &UnitQuaternion<f64>) -> [f64; 3] {
-        let angles = match self.form {
-            Form::RotationVector => so3::log(rotation).into(),
-            Form::Euler { axes, reversed } => in_product_order(euler_angles(axes, rotation), reversed),
-        };
-        angles.map(|angle: f64| angle.to_degrees() + 0.0)
+        self.order.angles_from_rotation(rotation).map(|angle| angle.to_degrees() + 0.0)
     }
 
     /// Standard deviations (degrees) of the three numbers, from the covariance (rad²) of the rotation as a right
@@ -129,11 +232,6 @@ impl PoseConvention {
         let covariance = by_rotation * rotation_covariance * by_rotation.transpose();
         [0, 1, 2].map(|angle| covariance[(angle, angle)].max(0.0).sqrt())
     }
-}
-
-fn in_product_order(angles: [f64; 3], reversed: bool) -> [f64; 3] {
-    let [a, b, c] = angles;
-    if reversed { [c, b, a] } else { angles }
 }
 
 fn about(axis: Axis, angle: f64) -> UnitQuaternion<f64> {
@@ -199,6 +297,37 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn every_order_round_trips_by_both_of_its_triples() {
+        for (idx, order) in AngleOrder::ALL.into_iter().enumerate() {
+            assert_eq!(AngleOrder::ALL.iter().position(|other| *other == order), Some(idx), "{order} stands once");
+            for angles in [[0.3, 0.8, -2.0], [-3.0, -0.4, 1.1], [2.0, 1.5, 0.0]] {
+                let rotation = order.rotation_from_angles(angles);
+                let first = order.angles_from_rotation(&rotation);
+                let second = order.second_angles(first);
+                assert!(first.iter().zip(second).any(|(first, second)| (first - second).abs() > 0.1));
+                for again in [first, second, order.second_angles(second)] {
+                    // Rounding of a few turns of the angles.
+                    assert!(order.rotation_from_angles(again).angle_to(&rotation) < 1e-13, "{order}: {again:?}");
+                }
+                let backwards = order.backwards();
+                let [a, b, c] = angles;
+                if order != AngleOrder::RotationVector {
+                    assert!(backwards.rotation_from_angles([c, b, a]).angle_to(&rotation) < 1e-14, "{order}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn orders_have_the_names_that_engineers_use_and_makers_that_share_one_are_found() {
+        let fanuc = PoseConvention::default_convention();
+        assert_eq!(fanuc.order.to_string(), "extrinsic XYZ");
+        assert_eq!(fanuc.order.backwards().to_string(), "intrinsic ZYX");
+        let ids: Vec<&str> = PoseConvention::of_order(fanuc.order).map(|convention| convention.id).collect();
+        assert_eq!(ids, ["fanuc-wpr", "yaskawa-rxryrz", "mitsubishi-abc", "denso-rxryrz"]);
     }
 
     #[test]

@@ -19,7 +19,7 @@ pub mod so3;
 pub mod stats;
 pub mod transform;
 
-pub use convention::PoseConvention;
+pub use convention::{AngleOrder, PoseConvention};
 pub use frame::{Base, Flange, Frame, Sensor};
 pub use profile::Profile;
 pub use transform::Transform;

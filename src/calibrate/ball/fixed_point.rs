@@ -143,7 +143,7 @@ fn section<'a>(problem: &BallProblem, station: &'a Station, warnings: &mut Vec<W
 /// |y| = √(R² − l²) and its standard deviation (`l/|y|)·σ_l`; sections larger than the ball are taken for the largest.
 ///
 /// At the largest arc the linear formula diverges; there |y| stays below what a radius error of one σ makes, √(2 R `σ_l`).
-fn distance_from_plane(arc: &ArcFit, ball_radius_mm: f64) -> (f64, f64) {
+pub(crate) fn distance_from_plane(arc: &ArcFit, ball_radius_mm: f64) -> (f64, f64) {
     let section_radius_mm = arc.circle.radius_mm.min(ball_radius_mm);
     let size_y_mm = ((ball_radius_mm - section_radius_mm) * (ball_radius_mm + section_radius_mm)).sqrt();
     let std_l_mm = arc.std_mm()[2];

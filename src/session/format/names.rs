@@ -19,7 +19,8 @@ pub(super) const SENSOR: &[&str] = &["model", "profile_std_mm", "reference_dista
 pub(super) const STATION: &[&str] = &["label", "enabled", "side", "edge", "captures"];
 pub(super) const CAPTURE: &[&str] = &["base_from_flange", "profile", "point_mm", "step"];
 pub(super) const PROFILE: &[&str] = &["x_mm", "z_mm"];
-pub(super) const POSE: &[&str] = &["translation_mm", "quaternion_wxyz", "euler_deg", "convention"];
+pub(super) const POSE: &[&str] = &["translation_mm", "quaternion_wxyz", "euler_deg", "convention", "written"];
+pub(super) const WRITTEN: &[&str] = &["euler_deg", "convention"];
 pub(super) const PUBLISHED: &[&str] = &["ball_in_base_mm", "error_from_first_mm", "caption"];
 pub(super) const TRUTH: &[&str] = &["flange_from_sensor", "base_from_sensor", "ball_in_base_mm", "ball_in_flange_mm"];
 

@@ -11,7 +11,7 @@ use crate::geometry::profile::ProfileError;
 use crate::geometry::{Frame, PoseConvention, Profile, Transform};
 use crate::session::check::Finding;
 use crate::session::model::{
-    Capture, Edge, Published, Reading, Robot, Sensor, Session, Station, Target, Truth, UnknownFields,
+    Capture, Edge, Published, Reading, Robot, Sensor, Session, Station, Target, Truth, UnknownFields, WrittenAngles,
 };
 
 use super::cursor::{Cursor, Object, Quantity, Refusal, listed};
@@ -215,7 +215,7 @@ fn label(station: &Object<'_>, station_idx: usize) -> Result<String, Refusal> {
 fn capture(cursor: &Cursor<'_>, mended: &mut Mended) -> Result<Capture, Refusal> {
     let object = cursor.object("an object with base_from_flange, and profile or point_mm")?;
     let mut unknown = object.unknown(names::CAPTURE);
-    let base_from_flange = pose(&object, "base_from_flange", &mut unknown, mended)?;
+    let (base_from_flange, written_angles) = pose(&object, "base_from_flange", &mut unknown, mended)?;
     let either = "either profile or point_mm";
     let reading = match (object.optional("profile"), object.optional("point_mm")) {
         (Some(cursor), None) => Reading::Profile(Arc::new(profile(&cursor, &mut unknown)?)),
@@ -225,7 +225,7 @@ fn capture(cursor: &Cursor<'_>, mended: &mut Mended) -> Result<Capture, Refusal>
     };
     Ok(Capture {
         base_from_flange,
-        written_angles: None,
+        written_angles,
         reading,
         step_mm: object.optional_number("step", &limits::STEP_MM)?,
         unknown,
@@ -254,32 +254,57 @@ fn profile(cursor: &Cursor<'_>, unknown: &mut UnknownFields) -> Result<Profile, 
     })
 }
 
-/// A pose, as a quaternion or as a maker's three angles.
+/// A pose, as a quaternion or as a maker's three angles; these as they are written, also where they stand beside the
+/// quaternion that was made of them.
 fn pose<Dst: Frame, Src: Frame>(
     parent: &Object<'_>,
     name: &str,
     unknown: &mut UnknownFields,
     mended: &mut Mended,
-) -> Result<Transform<Dst, Src>, Refusal> {
+) -> Result<(Transform<Dst, Src>, Option<WrittenAngles>), Refusal> {
     let expected = "an object with translation_mm and quaternion_wxyz, or with euler_deg and convention";
     let cursor = parent.required(name, expected)?;
     let object = cursor.object(expected)?;
-    object.keep_unknown_in(unknown, name, names::POSE);
+    let mut unknown_here = object.unknown(names::POSE);
     let translation_mm = object.required("translation_mm", "a list of 3 numbers in mm")?.vec3(&limits::POSITION_MM)?;
-    let rotation = match (object.optional("quaternion_wxyz"), object.optional("euler_deg")) {
-        (Some(cursor), None) => quaternion(&cursor, mended)?,
+    let (rotation, written) = match (object.optional("quaternion_wxyz"), object.optional("euler_deg")) {
+        (Some(cursor), None) => (quaternion(&cursor, mended)?, written_beside_quaternion(&object, &mut unknown_here)?),
         (None, Some(cursor)) => {
-            let angles_deg = cursor.array::<3>(&limits::ANGLE_DEG)?;
-            let known = listed(PoseConvention::ALL.iter().map(|convention| convention.id));
-            let convention = convention(&object.required("convention", &known)?)?;
-            upper_half(convention.rotation_from_angles_deg(angles_deg))
+            if let Some(second) = object.optional("written") {
+                return Err(second.refuse_as("both euler_deg and written", "written only beside quaternion_wxyz"));
+            }
+            let written = written_angles(&cursor, &object)?;
+            (upper_half(written.convention.rotation_from_angles_deg(written.angles_deg)), Some(written))
         }
         (Some(_), Some(_)) => return Err(cursor.refuse_as("both quaternion_wxyz and euler_deg", "one of them")),
         (None, None) => {
             return Err(cursor.refuse_as("no orientation", "quaternion_wxyz, or euler_deg and convention"));
         }
     };
-    Ok(Transform::from_parts(translation_mm, rotation))
+    if !unknown_here.is_empty() {
+        unknown.insert(name.to_owned(), unknown_here.into());
+    }
+    Ok((Transform::from_parts(translation_mm, rotation), written))
+}
+
+/// The angles that a pose was written in before it was saved as a quaternion.
+fn written_beside_quaternion(pose: &Object<'_>, unknown: &mut UnknownFields) -> Result<Option<WrittenAngles>, Refusal> {
+    let expected = "an object with euler_deg and convention";
+    let Some(cursor) = pose.optional("written") else {
+        return Ok(None);
+    };
+    let object = cursor.object(expected)?;
+    object.keep_unknown_in(unknown, "written", names::WRITTEN);
+    let angles = object.required("euler_deg", "a list of 3 angles in degrees")?;
+    written_angles(&angles, &object).map(Some)
+}
+
+fn written_angles(angles: &Cursor<'_>, object: &Object<'_>) -> Result<WrittenAngles, Refusal> {
+    let known = listed(PoseConvention::ALL.iter().map(|convention| convention.id));
+    Ok(WrittenAngles {
+        angles_deg: angles.array::<3>(&limits::ANGLE_DEG)?,
+        convention: convention(&object.required("convention", &known)?)?,
+    })
 }
 
 fn quaternion(cursor: &Cursor<'_>, mended: &mut Mended) -> Result<UnitQuaternion<f64>, Refusal> {
@@ -337,7 +362,8 @@ fn truth(cursor: &Cursor<'_>, mended: &mut Mended) -> Result<Truth, Refusal> {
     let pose_name = present("base_from_sensor", "flange_from_sensor");
     let ball_name = present("ball_in_flange_mm", "ball_in_base_mm");
     let mut unknown = object.unknown(names::TRUTH);
-    let flange_from_sensor = pose(&object, pose_name, &mut unknown, mended)?;
+    // What the truth was written in is of no use to anyone.
+    let (flange_from_sensor, _) = pose(&object, pose_name, &mut unknown, mended)?;
     let ball = object.required(ball_name, "the ball's true centre, a list of 3 numbers in mm")?;
     Ok(Truth { flange_from_sensor, ball_in_base_mm: ball.vec3(&limits::POSITION_MM)?, unknown })
 }

@@ -7,7 +7,7 @@ use serde_json::Value;
 use crate::calibrate::{Mount, SideChoice};
 use crate::geometry::{Frame, Profile, Transform, Vec3};
 use crate::session::model::{
-    Capture, Edge, Published, Reading, Robot, Sensor, Session, Station, Target, Truth, UnknownFields,
+    Capture, Edge, Published, Reading, Robot, Sensor, Session, Station, Target, Truth, UnknownFields, WrittenAngles,
 };
 
 use super::{VERSION, names};
@@ -111,7 +111,8 @@ fn station(out: &mut Writer, station: &Station) {
 fn capture(out: &mut Writer, capture: &Capture) {
     out.open(Layout::Line);
     out.field("base_from_flange");
-    pose(out, &capture.base_from_flange, nested(&capture.unknown, "base_from_flange"));
+    let written = capture.written_angles.as_ref();
+    pose(out, &capture.base_from_flange, written, nested(&capture.unknown, "base_from_flange"));
     out.optional_number("step", capture.step_mm);
     out.unknown(&capture.unknown, names::CAPTURE);
     match &capture.reading {
@@ -134,10 +135,22 @@ fn profile(out: &mut Writer, profile: &Profile, unknown: Option<&UnknownFields>)
     out.close();
 }
 
-fn pose<Dst: Frame, Src: Frame>(out: &mut Writer, pose: &Transform<Dst, Src>, unknown: Option<&UnknownFields>) {
+fn pose<Dst: Frame, Src: Frame>(
+    out: &mut Writer,
+    pose: &Transform<Dst, Src>,
+    written: Option<&WrittenAngles>,
+    unknown: Option<&UnknownFields>,
+) {
     out.open(Layout::Line);
     out.field("translation_mm").vec3(&pose.translation_mm());
     out.field("quaternion_wxyz").numbers(&pose.quaternion_wxyz());
+    if let Some(written) = written {
+        out.field("written").open(Layout::Line);
+        out.field("euler_deg").numbers(&written.angles_deg);
+        out.field("convention").text(written.convention.id);
+        out.nested_unknown(unknown.and_then(|unknown| nested(unknown, "written")), names::WRITTEN);
+        out.close();
+    }
     out.nested_unknown(unknown, names::POSE);
     out.close();
 }
@@ -168,7 +181,7 @@ fn truth(out: &mut Writer, truth: &Truth, mount: Mount) {
     };
     out.open(Layout::Lines);
     out.field(pose_name);
-    pose(out, &truth.flange_from_sensor, nested(&truth.unknown, pose_name));
+    pose(out, &truth.flange_from_sensor, None, nested(&truth.unknown, pose_name));
     out.field(ball_name).vec3(&truth.ball_in_base_mm);
     out.unknown(&truth.unknown, names::TRUTH);
     out.close();
