@@ -8,7 +8,7 @@ use thiserror::Error;
 
 use crate::calibrate::Mount;
 use crate::session::{Session, save};
-use crate::simulate::{Dirt, SimulationOptions, simulate};
+use crate::simulate::{Dirt, Fault, SimulationOptions, simulate};
 
 use super::{EXIT_WRONG_INPUT, fail};
 
@@ -119,6 +119,9 @@ pub struct SimulateArgs {
     /// The number of a station whose poses are wrong by 2 mm.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=10_000))]
     pub bad_pose: Option<u16>,
+    /// What else is wrong with the session, by the code that the diagnosis gives it, e.g. wrong-radius.
+    #[arg(long, value_name = "NAME", value_parser = fault)]
+    pub fault: Option<Fault>,
     /// Round points and positions to so many decimals.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=12))]
     pub decimals: Option<u8>,
@@ -238,6 +241,7 @@ fn options(args: &SimulateArgs) -> Result<SimulationOptions, SimulateRefusal> {
             has_flank_bias: has(DirtArg::Flanks),
         },
         bad_pose_station: args.bad_pose.map(|number| usize::from(number) - 1),
+        fault: args.fault,
         decimals: args.decimals,
         ..SimulationOptions::default()
     })
@@ -265,6 +269,10 @@ fn tilt(text: &str) -> Result<f64, String> {
 
 fn spin(text: &str) -> Result<f64, String> {
     within(text, [0.0, 180.0])
+}
+
+fn fault(text: &str) -> Result<Fault, String> {
+    Fault::by_id(text).ok_or_else(|| format!("expected one of {}", Fault::ALL.map(Fault::id).join(", ")))
 }
 
 fn within(text: &str, [min, max]: [f64; 2]) -> Result<f64, String> {
@@ -307,6 +315,7 @@ mod tests {
             ("--profile-std-mm inf", "--profile-std-mm"),
             ("--tilt-deg 90", "--tilt-deg"),
             ("--dirty mud", "--dirty"),
+            ("--fault gremlin", "expected one of pose-convention, quaternion-order"),
         ] {
             let refusal = parsed(arguments).expect_err(arguments).to_string();
             assert!(refusal.contains(culprit), "{arguments}: {refusal}");

@@ -4,12 +4,15 @@
 //! Data flows `Session` + `BallProblem` + method results → [`diagnose`] → [`Diagnosis`]. Nothing here changes a session;
 //! [`remedy::apply`] makes a changed copy when the user asks for it.
 
+mod consensus;
 pub mod convention;
 pub mod finding;
 pub mod geometry;
 pub mod hypotheses;
+mod model;
 pub mod remedy;
 pub mod stations;
+mod weighing;
 
 pub use convention::{PoseReading, ReadingFit};
 pub use finding::{Axis, CurveAxis, Evidence, Fault, Finding, Plot, Severity, StationBar};
@@ -49,14 +52,22 @@ pub struct Case<'a> {
 pub fn diagnose(case: Case<'_>, watch: &mut dyn Watch) -> Result<Diagnosis, Cancelled> {
     const PARTS: usize = 4;
     watch.report(0, PARTS)?;
-    let mut findings = geometry::examine(case);
+    let mut findings = suspicions(case);
     watch.report(1, PARTS)?;
-    findings.extend(stations::examine(case));
-    watch.report(2, PARTS)?;
-    findings.extend(hypotheses::examine(case));
-    watch.report(3, PARTS)?;
     let (misread, readings) = convention::examine(case, watch)?;
     findings.extend(misread);
-    findings.sort_by(Finding::more_serious_first);
-    Ok(Diagnosis { findings, readings, validation: best_available(case.results).and_then(validate) })
+    watch.report(2, PARTS)?;
+    let causes = weighing::causes(case, findings);
+    watch.report(3, PARTS)?;
+    let validation = best_available(case.results).and_then(validate);
+    let findings = weighing::with_warnings(case, causes, validation.as_ref());
+    Ok(Diagnosis { findings, readings, validation })
+}
+
+/// What the quick examinations find, the poses read as they are.
+fn suspicions(case: Case<'_>) -> Vec<Finding> {
+    let mut findings = geometry::examine(case);
+    findings.extend(stations::examine(case));
+    findings.extend(hypotheses::examine(case));
+    findings
 }

@@ -13,7 +13,8 @@ pub const TWIN_ANGLE_DEG: f64 = 0.5;
 pub const REACH_MM: f64 = 10_000.0;
 /// Commanded step and moved distance may differ by this much and a tenth of the step.
 pub const STEP_TOLERANCE_MM: f64 = 0.1;
-const STEP_TOLERANCE_RATIO: f64 = 0.1;
+/// The tenth.
+pub const STEP_TOLERANCE_RATIO: f64 = 0.1;
 
 /// Something to look at in a session; the wording is on the floor above.
 #[derive(Clone, Debug, PartialEq)]

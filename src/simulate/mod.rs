@@ -1,5 +1,6 @@
 //! Simulated sessions with their truth: for trying the program without a robot, and for measuring its accuracy.
 
+mod fault;
 mod options;
 mod path;
 mod random;
@@ -15,6 +16,7 @@ use path::{Setup, StationPath};
 use random::Random;
 use scene::{Scene, rounded, rounded_rotation};
 
+pub use fault::Fault;
 pub use options::{Dirt, SimulationOptions};
 
 /// Decimals of reported quaternions where positions and points are rounded: a thousand times finer than any robot is.
@@ -26,6 +28,7 @@ mod stream {
     pub const PROFILE: u64 = 2;
     pub const POSE: u64 = 3;
     pub const DIRT: u64 = 4;
+    pub const FAULT: u64 = 5;
 }
 
 /// A session with a ball, measured as `options` say, and the truth beside it.
@@ -35,7 +38,10 @@ mod stream {
 /// limit, see [`SimulationOptions`].
 #[must_use]
 pub fn simulate(options: &SimulationOptions) -> Session {
-    let options = options.within_limits();
+    let mut options = options.within_limits();
+    if let Some(fault) = options.fault {
+        fault.prepare(&mut options);
+    }
     let setup = Setup::new(&options);
     let scene = Scene {
         ball_in_world: setup.ball_in_world,
@@ -47,11 +53,19 @@ pub fn simulate(options: &SimulationOptions) -> Session {
         decimals: options.decimals,
     };
     let mut randoms = Randoms::new(options.seed);
-    let stations = (0..options.num_stations)
-        .map(|station_idx| station(&options, &setup, &scene, station_idx, &mut randoms))
+    let mut paths: Vec<StationPath> = (0..options.num_stations)
+        .map(|station_idx| StationPath::new(&options, &setup, station_idx, &mut randoms.path))
+        .collect();
+    if let Some(fault) = options.fault {
+        fault.change_paths(&options, &mut paths);
+    }
+    let stations = paths
+        .iter()
+        .enumerate()
+        .map(|(station_idx, path)| station(&options, &setup, &scene, station_idx, path, &mut randoms))
         .collect();
     let known = |std: f64| (std > 0.0).then_some(std);
-    Session {
+    let mut session = Session {
         name: format!("Simulated ball, {} mm", options.radius_mm),
         notes: String::new(),
         robot: Robot {
@@ -76,7 +90,11 @@ pub fn simulate(options: &SimulationOptions) -> Session {
             unknown: UnknownFields::new(),
         }),
         unknown: UnknownFields::new(),
+    };
+    if let Some(fault) = options.fault {
+        fault.spoil(&options, &mut session);
     }
+    session
 }
 
 struct Randoms {
@@ -102,9 +120,12 @@ fn station(
     setup: &Setup,
     scene: &Scene,
     station_idx: usize,
+    path: &StationPath,
     randoms: &mut Randoms,
 ) -> Station {
-    let path = StationPath::new(options, setup, station_idx, &mut randoms.path);
+    let scene = &scene.with_ball_shifted_by(
+        options.fault.map_or_else(Vec3::zeros, |fault| fault.ball_shift_mm(options, station_idx)),
+    );
     let captures = (0..options.num_steps)
         .map(|capture_idx| {
             let world_from_sensor = path.world_from_sensor(capture_idx);

@@ -2,6 +2,8 @@
 
 use crate::calibrate::Mount;
 
+use super::fault::Fault;
+
 /// What real profiles hold besides the ball.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "independent switches, any of which may be on")]
@@ -63,6 +65,8 @@ pub struct SimulationOptions {
     pub dirt: Dirt,
     /// The index of a station whose reported poses are wrong by [`Self::BAD_POSE_MM`].
     pub bad_pose_station: Option<usize>,
+    /// What is wrong with the session.
+    pub fault: Option<Fault>,
     /// Decimals of profile points (mm) and reported positions; `None`: unrounded.
     pub decimals: Option<u8>,
 }
@@ -144,6 +148,7 @@ impl Default for SimulationOptions {
             z_towards_sensor: false,
             dirt: Dirt::default(),
             bad_pose_station: None,
+            fault: None,
             decimals: None,
         }
     }

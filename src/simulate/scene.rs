@@ -51,6 +51,11 @@ struct Hit {
 }
 
 impl Scene {
+    /// The same with the ball somewhere else; the table stays below it.
+    pub fn with_ball_shifted_by(&self, shift_mm: Vec3) -> Self {
+        Self { ball_in_world: self.ball_in_world + shift_mm, ..self.clone() }
+    }
+
     /// The profile of a sensor standing at `world_from_sensor`.
     pub fn profile(&self, world_from_sensor: &Rigid, noise: &mut Random, dirt: &mut Random) -> Profile {
         let ball_in_sensor = world_from_sensor.inverse_transform_point(&self.ball_in_world.into()).coords;

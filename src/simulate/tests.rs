@@ -175,3 +175,28 @@ fn wild_options_give_a_session_that_can_be_saved_and_opened() {
         }
     }
 }
+
+#[test]
+fn every_fault_changes_the_session_and_leaves_it_one_that_can_be_opened() {
+    for mount in [Mount::OnFlange, Mount::Fixed] {
+        let clean = SimulationOptions { num_steps: 3, num_points: 60, mount, ..SimulationOptions::default() };
+        for fault in Fault::ALL {
+            assert_eq!(Fault::by_id(fault.id()), Some(fault));
+            let session = simulate(&SimulationOptions { fault: Some(fault), ..clean.clone() });
+            assert_ne!(session, simulate(&clean), "{mount:?}, {}", fault.id());
+            assert_eq!(session.truth, simulate(&clean).truth, "{mount:?}, {}", fault.id());
+            let again = parse(to_json(&session).as_bytes(), "simulated");
+            assert!(again.is_ok(), "{mount:?}, {}: {again:?}", fault.id());
+        }
+    }
+}
+
+#[test]
+fn every_fault_bears_few_stations_and_missing_noise() {
+    for num_stations in 0..3 {
+        for fault in Fault::ALL {
+            let options = SimulationOptions { num_stations, fault: Some(fault), ..SimulationOptions::noise_free() };
+            assert_eq!(simulate(&options).stations.len(), num_stations, "{}", fault.id());
+        }
+    }
+}

@@ -16,9 +16,9 @@ use super::RECOMMENDED_STATIONS;
 /// With five stations six numbers judge nine unknowns; fewer stations than this are said to be few.
 const FEW_BELOW: usize = 6;
 /// Below this rotation span the residual says little: 62° gave 0.8 mm between halves of real data, 20° gave 4 mm.
-const RECOMMENDED_SPAN_DEG: f64 = 40.0;
+pub(crate) const RECOMMENDED_SPAN_DEG: f64 = 40.0;
 /// Rotations this many times smaller about one axis than about another leave that direction weak.
-const ONE_AXIS_RATIO: f64 = 8.0;
+pub(crate) const ONE_AXIS_RATIO: f64 = 8.0;
 /// A left-out error this many times the median of the others, and not small in itself, is one to look at.
 const STANDS_OUT_RATIO: f64 = 4.0;
 /// So is its residual, by this factor at least.

@@ -29,7 +29,7 @@ fn first_from_step(sweep: &StationSweep<'_>, step: usize, flange_from_sensor: &R
 /// What a section lacks to be explained by a ball at `predicted` (its own sensor frame), and the derivative by it.
 ///
 /// The third residual is (l² − R² + y²)/(2 l): to first order l minus the curve, but finite beyond the ball as well.
-pub(super) fn section_residual(arc: &ArcFit, ball_radius_mm: f64, predicted: Vec3) -> (Vec3, Mat3) {
+pub(crate) fn section_residual(arc: &ArcFit, ball_radius_mm: f64, predicted: Vec3) -> (Vec3, Mat3) {
     let circle = arc.circle;
     let l = circle.radius_mm;
     let residual = Vec3::new(

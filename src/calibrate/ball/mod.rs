@@ -19,6 +19,9 @@ mod variance_components;
 
 pub use variance_components::VarianceSpread;
 
+pub(crate) use assemble::{ONE_AXIS_RATIO, RECOMMENDED_SPAN_DEG};
+pub(crate) use curve::section_residual;
+
 /// Three unknowns a station must cover the nine of the problem, with one station to spare for judging.
 pub const MIN_STATIONS: usize = 4;
 /// From here on the error figures are worth believing.

@@ -1,0 +1,189 @@
+//! Which of the suspicions is the cause, and which are merely its symptoms: the cause is what explains most, and a symptom
+//! is gone once the cause is mended.
+
+use crate::calibrate::validation::Validation;
+use crate::calibrate::{BallProblem, Method, MethodResult, Warning, best_available, solve, solve_all};
+use crate::session::{Session, ball_problem, measure};
+use crate::watch::Unwatched;
+
+use super::finding::{Fault, Finding, Severity};
+use super::model::{Extension, Model};
+use super::{Case, remedy, suspicions};
+
+/// A remedy that lowers the residual by less has not shown that it mends anything.
+const MENDS_FROM: f64 = 1.5;
+/// Halves of the stations that differ by so many times what they should, ...
+const HALVES_RATIO: f64 = 3.0;
+/// ... and by this, mm, are worth a finding: below it no application notices.
+const HALVES_MM: f64 = 0.1;
+/// Residuals as odd as this by chance once in a hundred million sessions: with many sections the test sees every trace of a
+/// biased flank, which does no harm.
+const NOT_NORMAL_P: f64 = 1e-8;
+
+/// The findings with their weight, the most serious first, without those that the first one accounts for.
+pub(super) fn causes(case: Case<'_>, mut findings: Vec<Finding>) -> Causes {
+    weigh_stations(case, &mut findings);
+    findings.sort_by(Finding::more_serious_first);
+    let Some(mended) = findings.first().and_then(|first| Mended::of(case, first, &findings)) else {
+        return Causes { findings, remaining_warnings: None };
+    };
+    let remaining = suspicions(mended.case());
+    let first_is_station = is_about_stations(&findings[0].fault);
+    let mut is_first = true;
+    findings.retain(|finding| {
+        let is_of_first = is_first || (first_is_station && is_about_stations(&finding.fault));
+        is_first = false;
+        is_of_first || remaining.iter().any(|other| is_same(&finding.fault, &other.fault))
+    });
+    let remaining_warnings =
+        best_available(&mended.results).map(|solution| solution.warnings.clone()).unwrap_or_default();
+    Causes { findings, remaining_warnings: Some(remaining_warnings) }
+}
+
+/// What is left of the findings.
+pub(super) struct Causes {
+    findings: Vec<Finding>,
+    /// What the best method still warns of once the first is mended; `None` where that was not tried.
+    remaining_warnings: Option<Vec<Warning>>,
+}
+
+/// The findings, and after them what the methods and the validation say that is not said already.
+pub(super) fn with_warnings(case: Case<'_>, causes: Causes, validation: Option<&Validation>) -> Vec<Finding> {
+    let Causes { mut findings, remaining_warnings } = causes;
+    let mut more: Vec<(Fault, Severity)> = Vec::new();
+    if let Some(solution) = best_available(case.results) {
+        let remains = |warning: &&Warning| {
+            remaining_warnings.as_ref().is_none_or(|left| left.iter().any(|other| other.code() == warning.code()))
+        };
+        more.extend(solution.warnings.iter().filter(|warning| !has_a_fault(warning)).filter(remains).map(|warning| {
+            let severity = if warning.casts_doubt() { Severity::Doubtful } else { Severity::Note };
+            (Fault::Method(warning.clone()), severity)
+        }));
+    } else if findings.first().is_none_or(|first| first.severity != Severity::Wrong) {
+        more.extend(reason(case.results).map(|error| (Fault::NotSolved(error), Severity::Wrong)));
+    }
+    // What is wrong shows in these as well; by themselves they name nothing.
+    let is_named = findings.iter().any(|finding| finding.severity < Severity::Note);
+    if let Some(validation) = validation.filter(|_| !is_named) {
+        more.extend(from_validation(validation));
+    }
+    findings.extend(more.into_iter().map(|(fault, severity)| Finding {
+        fault,
+        severity,
+        explains: 1.0,
+        evidence: super::Evidence::default(),
+        remedy: None,
+    }));
+    findings.sort_by(Finding::more_serious_first);
+    findings
+}
+
+/// Whether a fault says the same, or says with a stricter measure that there is nothing.
+const fn has_a_fault(warning: &Warning) -> bool {
+    matches!(
+        warning,
+        Warning::LittleRotation { .. }
+            | Warning::NearlyOneAxis { .. }
+            | Warning::RadiusDisagrees { .. }
+            | Warning::TravelOffNormal { .. }
+            | Warning::StepDiffersFromPose { .. }
+            | Warning::StationStandsOut { .. }
+    )
+}
+
+/// Why the method that asks for least computed nothing.
+fn reason(results: &[MethodResult]) -> Option<crate::calibrate::SolveError> {
+    let of_method = |method| results.iter().find(|result| result.method == method);
+    let result = of_method(Method::BallFixedPoint).or_else(|| results.first())?;
+    result.outcome.as_ref().err().cloned()
+}
+
+fn from_validation(validation: &Validation) -> impl Iterator<Item = (Fault, Severity)> {
+    let halves = validation
+        .split_half
+        .as_ref()
+        .filter(|halves| halves.median_mm > (HALVES_RATIO * halves.expected_mm).max(HALVES_MM))
+        .map(|halves| {
+            let fault = Fault::HalvesDisagree { median_mm: halves.median_mm, expected_mm: halves.expected_mm };
+            (fault, Severity::Doubtful)
+        });
+    let normality = validation
+        .normality
+        .as_ref()
+        .filter(|normality| normality.p_value < NOT_NORMAL_P)
+        .map(|normality| (Fault::ResidualsNotNormal { p_value: normality.p_value }, Severity::Note));
+    halves.into_iter().chain(normality)
+}
+
+const fn is_about_stations(fault: &Fault) -> bool {
+    matches!(fault, Fault::WrongPose { .. } | Fault::StalePose { .. } | Fault::MixedOrder { .. })
+}
+
+/// The same fault, and of the same stations where it is about some.
+fn is_same(a: &Fault, b: &Fault) -> bool {
+    match (a, b) {
+        (Fault::WrongPose { station_idx: a, .. }, Fault::WrongPose { station_idx: b, .. })
+        | (Fault::StalePose { station_idx: a, .. }, Fault::StalePose { station_idx: b, .. }) => a == b,
+        (Fault::TwinPoses { station_idxs: a, .. }, Fault::TwinPoses { station_idxs: b, .. }) => a == b,
+        _ => a.code() == b.code(),
+    }
+}
+
+/// Tries the remedies of all stations that contradict the rest: together, as one of two wrong ones hides what the other
+/// one does.
+fn weigh_stations(case: Case<'_>, findings: &mut [Finding]) {
+    let Some(first) = findings.iter().find(|finding| is_about_stations(&finding.fault)) else { return };
+    let as_given = best_available(case.results).and_then(|best| residual_mm(case.problem, best.reduced.state));
+    let mended = mended_session(case.session, first, findings);
+    let after = problem_of(&mended).and_then(|problem| {
+        let solved = [Method::BallBundle, Method::BallFixedPoint].map(|method| solve(&problem, method).ok());
+        residual_mm(&problem, solved.into_iter().flatten().next()?.reduced.state)
+    });
+    let (Some(as_given), Some(after)) = (as_given, after) else { return };
+    for finding in findings.iter_mut().filter(|finding| is_about_stations(&finding.fault)) {
+        finding.evidence.residual_mm = Some([as_given, after]);
+        finding.explains = as_given / after.max(1e-9);
+    }
+}
+
+/// RMS of what is left of the sections, by the measure that the suspicions with a number use, mm.
+fn residual_mm(problem: &BallProblem, start: crate::calibrate::observation::State) -> Option<f64> {
+    let model = Model::new(problem)?;
+    Some(model.fit(Extension::Plain, model.as_given(start))?.rms_mm)
+}
+
+/// A session with the first finding mended, examined anew.
+struct Mended {
+    session: Session,
+    problem: BallProblem,
+    results: Vec<MethodResult>,
+}
+
+impl Mended {
+    fn of(case: Case<'_>, first: &Finding, findings: &[Finding]) -> Option<Self> {
+        first.remedy.as_ref().filter(|_| first.explains > MENDS_FROM)?;
+        let session = mended_session(case.session, first, findings);
+        let problem = problem_of(&session)?;
+        let results = solve_all(&problem, &Method::ALL, &mut Unwatched).ok()?;
+        Some(Self { session, problem, results })
+    }
+
+    fn case(&self) -> Case<'_> {
+        Case { session: &self.session, problem: &self.problem, results: &self.results }
+    }
+}
+
+/// The session with a finding mended; stations that contradict the rest all at once.
+fn mended_session(session: &Session, first: &Finding, findings: &[Finding]) -> Session {
+    let together = is_about_stations(&first.fault);
+    findings
+        .iter()
+        .filter(|finding| *finding == first || (together && is_about_stations(&finding.fault)))
+        .filter_map(|finding| finding.remedy.as_ref())
+        .fold(session.clone(), |session, remedy| remedy::apply(&session, remedy))
+}
+
+fn problem_of(session: &Session) -> Option<BallProblem> {
+    let measured = measure(session, None, &mut Unwatched).ok()?;
+    ball_problem(session, &measured).ok()
+}
