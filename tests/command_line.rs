@@ -57,6 +57,87 @@ fn the_result_file_has_the_names_that_programs_rely_on() {
     }
 }
 
+fn json(args: &[&str]) -> Value {
+    let output = handeye(args);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).expect("JSON")
+}
+
+#[test]
+fn the_result_file_says_how_far_to_rely_on_it() {
+    let args = ["solve", "sample_sessions/clean-sweeps.json", "--json", "--method", "ball-bundle"];
+    let result = json(&[&args[..], &["--bootstrap", "20"]].concat());
+    let uncertainty = &result["methods"][0]["uncertainty"];
+    let std_mm = uncertainty["workspace_point_std_mm"].as_f64().expect("a number");
+    assert!(uncertainty["workspace_point_95_mm"].as_f64().expect("a number") > std_mm);
+    assert!(uncertainty["weakest_direction"]["std_mm"].as_f64().expect("a number") < std_mm);
+    assert_eq!(uncertainty["by_radius"]["workspace_point_mm_per_mm"].as_array().map(Vec::len), Some(3));
+    assert!(uncertainty.as_object().expect("an object").contains_key("degrees_of_freedom"));
+    let diagnosis = &result["diagnosis"];
+    assert_eq!(diagnosis["findings"].as_array().map(Vec::len), Some(0), "{}", diagnosis["findings"]);
+    assert!(diagnosis["readings"].is_array());
+    assert_eq!(diagnosis["validation"]["bootstrap"]["draws"], 20);
+    let next = &diagnosis["next_poses"][0];
+    assert!(next["workspace_point_std_mm"].as_f64().expect("a number") < std_mm);
+    assert_eq!(next["base_from_flange"]["convention"], "fanuc-wpr");
+    assert!(json(&[&args[..], &["--no-diagnosis"]].concat()).get("diagnosis").is_none());
+}
+
+#[test]
+fn the_diagnosis_follows_the_tables() {
+    let text = stdout(&handeye(&["solve", "sample_sessions/one-bad-pose.json"]));
+    let (_, section) = text.split_once("\nDiagnosis\n").expect("a section");
+    for fragment in
+        ["! [wrong-pose] The pose of station 7", "next step: Leave out station 7", "next pose: x ", "per 0.01 mm"]
+    {
+        assert!(section.contains(fragment), "{fragment:?} is not in\n{section}");
+    }
+    let text = stdout(&handeye(&["solve", "sample_sessions/one-bad-pose.json", "--no-diagnosis"]));
+    assert!(!text.contains("Diagnosis"), "{text}");
+}
+
+#[test]
+fn next_poses_are_planned_in_the_robots_own_angles() {
+    let output = handeye(&["plan", "sample_sessions/few-rotations.json", "--stations", "3"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = stdout(&output);
+    for fragment in ["3 stations to measure next", "W/°", "σ then/mm", "FANUC W P R"] {
+        assert!(text.contains(fragment), "{fragment:?} is not in\n{text}");
+    }
+    let plan = json(&["plan", "sample_sessions/few-rotations.json", "--max-tilt-deg", "12", "--json"]);
+    assert_eq!(plan["format"], "handeye-plan");
+    let stations = plan["stations"].as_array().expect("a list");
+    assert_eq!(stations.len(), 4);
+    let mut before = plan["workspace_point_std_mm"].as_f64().expect("known");
+    for station in stations {
+        let after = station["workspace_point_std_mm"].as_f64().expect("known");
+        assert!(after < before && station["tilt_deg"].as_f64().expect("a number") < 12.001, "{station}");
+        before = after;
+    }
+}
+
+#[test]
+fn a_plan_from_nothing_needs_a_rough_cell() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("empty.json");
+    let session = r#"{"format": "handeye-session", "version": 1, "target": {"kind": "ball", "radius_mm": 15},
+        "robot": {"pose_convention": "kuka-abc"}, "stations": []}"#;
+    std::fs::write(&file, session).expect("written");
+    let path = file.to_str().expect("UTF-8");
+    check_refusal(&["plan", path], 3, &["--sensor-at", "found 0"]);
+    check_refusal(&["plan", path, "--ball-at", "1", "2", "3"], 2, &["--sensor-at"]);
+    check_refusal(&["plan", path, "--stations", "0"], 2, &["--stations"]);
+    check_refusal(&["plan", "no-such-file.json"], 2, &["no-such-file.json"]);
+    let rough = ["--sensor-at", "10", "0", "120", "90", "0", "0", "--ball-at", "450", "-120", "100"];
+    let plan = json(&[&["plan", path, "--json", "--stations", "6"], &rough[..]].concat());
+    let stations = plan["stations"].as_array().expect("a list");
+    assert_eq!(stations.len(), 6);
+    assert!(stations[2]["workspace_point_std_mm"].is_null() && stations[5]["workspace_point_std_mm"].is_f64());
+    assert_eq!(stations[0]["base_from_flange"]["convention"], "kuka-abc");
+    let no_width = [&["plan", path, "--half-width-mm", "-1"], &rough[..]].concat();
+    check_refusal(&no_width, 3, &["nothing lies within the limits"]);
+}
+
 #[test]
 fn table_1_of_the_paper_is_reproduced_and_its_misprints_pointed_out() {
     let output = handeye(&["solve", "sample_sessions/lin-mu-2019-table-1.json", "--paper-tables"]);

@@ -268,7 +268,7 @@ fn little_rotation_is_made_up_for_by_much() {
 fn single_sections_are_planned_as_single_sections() {
     let options = SimulationOptions { num_steps: 1, num_stations: 12, ..options(9, Mount::OnFlange) };
     let mut session = simulate(&options);
-    let (plan, solution) = planned(&session, &Limits::default(), 2);
+    let (plan, _) = planned(&session, &Limits::default(), 2);
     let mut noise = Noise(9);
     for station in &plan.stations {
         add_station(&mut session, &pose(station), 1, &mut noise);

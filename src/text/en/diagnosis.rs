@@ -2,8 +2,9 @@
 
 use crate::calibrate::validation::{Bootstrap, Influence, Normality, SplitHalf};
 use crate::calibrate::{Mount, SideChoice, Solution, SolveError, Uncertainty, Warning};
+use crate::diagnose::convention::{AngleUnit, Inversion, LengthUnit, QuaternionOrder, RotationReading};
 use crate::diagnose::{Axis, CurveAxis, Fault, Plot, PoseReading, Remedy, Severity};
-use crate::geometry::Vec3;
+use crate::geometry::{AngleOrder, Vec3};
 use crate::session::Session;
 use crate::text::digits::{decimals_for, fixed};
 
@@ -46,9 +47,9 @@ pub const fn severity_mark(severity: Severity) -> &'static str {
 
 /// A few words for lists.
 #[must_use]
-pub const fn fault_title(fault: &Fault) -> &'static str {
+pub fn fault_title(fault: &Fault) -> &'static str {
     match fault {
-        Fault::PosesMisread { .. } => "Poses are read wrongly",
+        Fault::PosesMisread { reading } => misread_title(reading),
         Fault::WrongSides { .. } => "Wrong side of the ball",
         Fault::MirroredAxis { axis: Axis::X } => "Mirrored x axis",
         Fault::MirroredAxis { axis: Axis::Z } => "Mirrored z axis",
@@ -72,6 +73,16 @@ pub const fn fault_title(fault: &Fault) -> &'static str {
         Fault::ResidualsNotNormal { .. } => "Errors that are not noise",
         Fault::NotSolved(_) => "No result",
         Fault::Method(warning) => warning_title(warning),
+    }
+}
+
+fn misread_title(reading: &PoseReading) -> &'static str {
+    match &reading.rotation {
+        RotationReading::Angles(angles) if angles.to != angles.from => "Angles in another convention",
+        RotationReading::Quaternion(_) => "Quaternions in another order",
+        RotationReading::Angles(_) => "Angles in another unit",
+        RotationReading::AsGiven if reading.inversion != Inversion::AsGiven => "Inverse poses",
+        RotationReading::AsGiven => "Positions in another unit",
     }
 }
 
@@ -102,7 +113,7 @@ pub fn fault_message(fault: &Fault, session: &Session) -> String {
     let label = |station_idx: &usize| station_label(session, *station_idx);
     match fault {
         Fault::PosesMisread { reading } => {
-            format!("The poses do not fit as they are read now. They fit when read as {}.", pose_reading(reading))
+            format!("The poses do not fit as they are read now. They fit as {}.", pose_reading_in_full(reading))
         }
         Fault::WrongSides { station_idxs } => {
             format!("{}: the given side of the ball is the wrong one.", capitalised(&stations(session, station_idxs)))
@@ -247,10 +258,7 @@ pub fn fault_remedy(fault: &Fault, session: &Session) -> String {
     let label = |station_idx: &usize| station_label(session, *station_idx);
     let fixed_words = match fault {
         Fault::PosesMisread { reading } => {
-            return format!(
-                "Read the poses as {}; check that the result stays where you expect it.",
-                pose_reading(reading)
-            );
+            return format!("Read the poses as {}, and correct it where the file is made.", pose_reading(reading));
         }
         Fault::WrongSides { .. } => "Turn these sides round, or set them to auto.",
         Fault::MirroredAxis { .. } => "Turn this axis round in all profiles, and check the sensor's settings.",
@@ -367,10 +375,70 @@ const fn side_name(side: SideChoice) -> &'static str {
     super::poses::side(side)
 }
 
-/// A way to read poses, by name.
+/// A way to read poses, by name: "FANUC W P R", "inverse poses, positions in metres".
 #[must_use]
-pub fn pose_reading(_reading: &PoseReading) -> String {
-    "another convention".to_owned()
+pub fn pose_reading(reading: &PoseReading) -> String {
+    let parts = [rotation_words(reading), inversion_words(reading.inversion), length_words(reading.length_unit)];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    if parts.is_empty() { AS_GIVEN.to_owned() } else { parts.join(", ") }
+}
+
+/// The same with all names of the order: other makers, and the two ways to spell it out.
+#[must_use]
+pub fn pose_reading_in_full(reading: &PoseReading) -> String {
+    let name = pose_reading(reading);
+    let Some(order) = reading.angle_order() else { return name };
+    let others: Vec<&str> = reading.makers().iter().skip(1).filter_map(|maker| maker.label.split(' ').next()).collect();
+    let also = if others.is_empty() { String::new() } else { format!(", also {}", others.join(", ")) };
+    match order {
+        AngleOrder::Intrinsic([i, j, k]) => {
+            format!("{name}{also} ({order} = {} read backwards)", AngleOrder::Extrinsic([k, j, i]))
+        }
+        AngleOrder::Extrinsic([i, j, k]) => {
+            format!("{name}{also} ({order} = {} read backwards)", AngleOrder::Intrinsic([k, j, i]))
+        }
+        AngleOrder::RotationVector => format!("{name}{also}"),
+    }
+}
+
+/// The poses as the session has them.
+const AS_GIVEN: &str = "given";
+
+fn rotation_words(reading: &PoseReading) -> Option<String> {
+    match &reading.rotation {
+        RotationReading::AsGiven => None,
+        RotationReading::Quaternion(QuaternionOrder::Xyzw) => Some("quaternion x y z w".to_owned()),
+        RotationReading::Quaternion(QuaternionOrder::WxyzReordered) => Some("quaternion w x y z".to_owned()),
+        RotationReading::Angles(angles) => {
+            let name = reading
+                .makers()
+                .first()
+                .map_or_else(|| format!("{} angles", angles.to), |maker| maker.label.to_owned());
+            Some(match angles.unit {
+                AngleUnit::Degrees => name,
+                AngleUnit::Radians => format!("{name} in radians"),
+                AngleUnit::DegreesConvertedTwice => format!("{name} without the second conversion to radians"),
+            })
+        }
+    }
+}
+
+fn inversion_words(inversion: Inversion) -> Option<String> {
+    match inversion {
+        Inversion::AsGiven => None,
+        Inversion::WholePose => Some("inverse poses (base in the flange)".to_owned()),
+        Inversion::RotationAlone => Some("inverse rotations".to_owned()),
+    }
+}
+
+fn length_words(unit: LengthUnit) -> Option<String> {
+    let unit = match unit {
+        LengthUnit::Millimetres => return None,
+        LengthUnit::Metres => "metres",
+        LengthUnit::Inches => "inches",
+        LengthUnit::Micrometres => "micrometres",
+    };
+    Some(format!("positions in {unit}"))
 }
 
 /// Heading of a plot of the evidence.
@@ -620,12 +688,45 @@ fn capitalised(words: &str) -> String {
 mod tests {
     use super::*;
     use crate::calibrate::Side;
+    use crate::diagnose::convention::AngleReading;
     use crate::fit::ArcRefusal;
-    use crate::geometry::Rigid;
+    use crate::geometry::{PoseConvention, Rigid};
     use crate::simulate::{SimulationOptions, simulate};
 
     fn session(mount: Mount) -> Session {
         simulate(&SimulationOptions { num_stations: 9, num_steps: 1, num_points: 2, mount, ..Default::default() })
+    }
+
+    fn angles(from: &str, to: &str, unit: AngleUnit) -> PoseReading {
+        let order = |id: &str| PoseConvention::by_id(id).expect("known").order;
+        let rotation = RotationReading::Angles(AngleReading {
+            from: order(from),
+            to: order(to),
+            unit,
+            second_at_station_idxs: Vec::new(),
+        });
+        PoseReading { rotation, ..PoseReading::default() }
+    }
+
+    fn longest_reading() -> PoseReading {
+        PoseReading {
+            inversion: Inversion::WholePose,
+            length_unit: LengthUnit::Micrometres,
+            ..angles("kuka-abc", "fanuc-wpr", AngleUnit::Radians)
+        }
+    }
+
+    #[test]
+    fn ways_to_read_poses_have_all_their_names() {
+        let fanuc = angles("kuka-abc", "fanuc-wpr", AngleUnit::Degrees);
+        assert_eq!(pose_reading(&fanuc), "FANUC W P R");
+        assert_eq!(
+            pose_reading_in_full(&fanuc),
+            "FANUC W P R, also Yaskawa, Mitsubishi, Denso (extrinsic XYZ = intrinsic ZYX read backwards)"
+        );
+        let in_radians = angles("ur-rotvec", "ur-rotvec", AngleUnit::Radians);
+        assert_eq!(pose_reading_in_full(&in_radians), "UR RX RY RZ in radians");
+        assert_eq!(pose_reading(&PoseReading::default()), "given");
     }
 
     fn faults() -> Vec<Fault> {
@@ -657,7 +758,14 @@ mod tests {
             Warning::NotConverged { num_iterations: 60 },
         ];
         let mut faults = vec![
-            Fault::PosesMisread { reading: PoseReading::default() },
+            Fault::PosesMisread { reading: longest_reading() },
+            Fault::PosesMisread {
+                reading: PoseReading {
+                    rotation: RotationReading::Quaternion(QuaternionOrder::Xyzw),
+                    ..PoseReading::default()
+                },
+            },
+            Fault::PosesMisread { reading: PoseReading { length_unit: LengthUnit::Inches, ..PoseReading::default() } },
             Fault::WrongSides { station_idxs: vec![1] },
             Fault::WrongSides { station_idxs: (0..9).collect() },
             Fault::MirroredAxis { axis: Axis::X },
