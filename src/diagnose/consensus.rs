@@ -105,8 +105,8 @@ struct Fit {
 pub(super) struct Consensus {
     /// The unknowns by their word.
     pub state: State,
-    /// Whether they scatter by no more than an arm in working order.
-    pub is_credible: bool,
+    /// How much they scatter beyond their own and the stated noise, mm.
+    scatter_mm: f64,
     /// By reading: whether it is one of them.
     pub agrees: Vec<bool>,
     /// By reading: how far its ball is from where the (other) agreeing ones have it, mm.
@@ -119,6 +119,11 @@ pub(super) struct Consensus {
 }
 
 impl Consensus {
+    /// Whether they scatter by no more than an arm in working order.
+    pub fn is_credible(&self) -> bool {
+        self.scatter_mm < CREDIBLE_STD_MM
+    }
+
     /// How many agree.
     pub fn num_agreeing(&self) -> usize {
         self.agrees.iter().filter(|agrees| **agrees).count()
@@ -242,16 +247,17 @@ impl<'a> Stations<'a> {
         if self.readings.len() < at_least {
             return None;
         }
-        let found = self.agreement(at_least);
-        if found.as_ref().is_some_and(|found| found.is_credible) {
-            return found.map(|found| (self, found));
-        }
         // Reduced points and single sections are the same either way.
         let is_swept = self.problem.stations.iter().any(|station| station.captures.len() >= MIN_STEPS);
-        let turned = is_swept.then(|| self.turned());
-        match turned.and_then(|turned| turned.agreement(at_least).map(|other| (turned, other))) {
-            Some((turned, other)) if other.is_credible => Some((turned, other)),
-            _ => found.map(|found| (self, found)),
+        let found = self.agreement(at_least);
+        if !is_swept || found.as_ref().is_some_and(|found| found.scatter_mm < SEARCH_STD_MM) {
+            return found.map(|found| (self, found));
+        }
+        let turned = self.turned();
+        match (found, turned.agreement(at_least)) {
+            (Some(found), Some(other)) if other.scatter_mm < 0.5 * found.scatter_mm => Some((turned, other)),
+            (None, Some(other)) => Some((turned, other)),
+            (found, _) => found.map(|found| (self, found)),
         }
     }
 
@@ -303,9 +309,9 @@ impl<'a> Stations<'a> {
             agrees.push(fits);
             misfit_mm.push(misfit);
         }
-        let is_credible = fit.extra_variance.sqrt() < CREDIBLE_STD_MM;
+        let scatter_mm = fit.extra_variance.sqrt();
         let noise_ratio_and_score = self.noise_ratio_and_score(members, fit);
-        Consensus { state: fit.state, is_credible, agrees, misfit_mm, tolerance_mm, noise_ratio_and_score }
+        Consensus { state: fit.state, scatter_mm, agrees, misfit_mm, tolerance_mm, noise_ratio_and_score }
     }
 
     /// Of so many stations those that agree best, by many small sets that are improved in turn.

@@ -24,7 +24,7 @@ pub fn examine(case: Case<'_>) -> Vec<Finding> {
     };
     let accused = accused(&stations, &consensus);
     let agreeing = stations.readings.len() - accused.len();
-    if consensus.is_credible && agreeing >= needed_stations(stations.readings.len()) {
+    if consensus.is_credible() && agreeing >= needed_stations(stations.readings.len()) {
         let mut found = findings(&stations, &consensus, &accused);
         found.extend(noise_above_stated(case, &stations, &consensus));
         return found;
@@ -183,7 +183,7 @@ fn shifted_order(case: Case<'_>) -> Option<Finding> {
         let (shifted, consensus) = Stations::new(&problem).consensus()?;
         let agreeing = consensus.num_agreeing();
         // All but the one at the end of the list, which has nobody's poses.
-        if !consensus.is_credible || agreeing + 1 < shifted.readings.len() {
+        if !consensus.is_credible() || agreeing + 1 < shifted.readings.len() {
             return None;
         }
         let poses_from: Vec<(usize, usize)> =
@@ -201,7 +201,7 @@ fn too_few(stations: &Stations<'_>, num_stations: usize) -> Option<Finding> {
     let consensus = stations.agreement(MIN_CLEAN_STATIONS)?;
     let clean = consensus.num_agreeing();
     let needed = needed_stations(num_stations);
-    if !consensus.is_credible || clean < MIN_CLEAN_STATIONS || clean >= needed {
+    if !consensus.is_credible() || clean < MIN_CLEAN_STATIONS || clean >= needed {
         return None;
     }
     let accused: Vec<usize> = (0..stations.readings.len()).filter(|idx| !consensus.agrees[*idx]).collect();

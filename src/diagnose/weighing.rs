@@ -24,6 +24,10 @@ const NOT_NORMAL_P: f64 = 1e-8;
 pub(super) fn causes(case: Case<'_>, mut findings: Vec<Finding>) -> Causes {
     weigh_stations(case, &mut findings);
     findings.sort_by(Finding::more_serious_first);
+    if findings.first().is_some_and(|first| first.severity == Severity::Wrong) {
+        // Whatever is wrong makes the stations scatter.
+        findings.retain(|finding| !matches!(finding.fault, Fault::NoiseAboveStated { .. }));
+    }
     let Some(mended) = findings.first().and_then(|first| Mended::of(case, first, &findings)) else {
         return Causes { findings, remaining_warnings: None };
     };

@@ -1,0 +1,153 @@
+//! Every fault that `handeye simulate --fault` makes is diagnosed by its name first, and a clean session is left alone.
+#![expect(clippy::expect_used, reason = "a test that cannot run must fail")]
+
+use handeye::app::compare::distance_from_truth;
+use handeye::calibrate::{Method, MethodResult, Mount, best_available, solve_all};
+use handeye::diagnose::{Case, Diagnosis, Fault as Found, Remedy, diagnose, remedy};
+use handeye::session::{Session, ball_problem, measure};
+use handeye::simulate::{Dirt, Fault, SimulationOptions, simulate};
+use handeye::watch::Unwatched;
+
+const MOUNTS: [Mount; 2] = [Mount::OnFlange, Mount::Fixed];
+
+/// The default session with fewer points, so that the tests are quick: the noise is that of the robot anyway.
+fn sweeps(mount: Mount, seed: u64) -> SimulationOptions {
+    SimulationOptions { seed, mount, num_points: 160, ..SimulationOptions::default() }
+}
+
+fn sections(mount: Mount, seed: u64) -> SimulationOptions {
+    SimulationOptions { num_stations: 20, num_steps: 1, ..sweeps(mount, seed) }
+}
+
+fn solved(session: &Session) -> (Diagnosis, Vec<MethodResult>) {
+    let measured = measure(session, None, &mut Unwatched).expect("not cancelled");
+    let problem = ball_problem(session, &measured).expect("a ball");
+    let results = solve_all(&problem, &Method::ALL, &mut Unwatched).expect("not cancelled");
+    let case = Case { session, problem: &problem, results: &results };
+    (diagnose(case, &mut Unwatched).expect("not cancelled"), results)
+}
+
+fn codes(session: &Session) -> Vec<&'static str> {
+    solved(session).0.findings.iter().map(|finding| finding.fault.code()).collect()
+}
+
+fn assert_first(fault: Fault, options: &SimulationOptions) {
+    let session = simulate(&SimulationOptions { fault: Some(fault), ..options.clone() });
+    let codes = codes(&session);
+    assert_eq!(codes.first(), Some(&fault.id()), "{codes:?} in {options:?}");
+}
+
+#[test]
+fn every_fault_of_a_session_of_sweeps_comes_first() {
+    for fault in Fault::ALL {
+        for seed in 1..=3 {
+            assert_first(fault, &sweeps(Mount::OnFlange, seed));
+        }
+        assert_first(fault, &sweeps(Mount::Fixed, 4));
+    }
+}
+
+#[test]
+fn faults_of_a_session_of_single_sections_come_first() {
+    for fault in Fault::ALL {
+        // Without steps there is neither travel nor anything that knows sizes from poses well.
+        let needs_sweeps = matches!(fault, Fault::TravelOffNormal | Fault::StepDiffersFromPose);
+        if !needs_sweeps {
+            for mount in MOUNTS {
+                assert_first(fault, &sections(mount, 5));
+            }
+        }
+    }
+}
+
+#[test]
+fn clean_sessions_have_no_findings() {
+    for seed in 1..=10 {
+        for mount in MOUNTS {
+            let dirty = SimulationOptions { dirt: Dirt::all(), num_points: 400, ..sweeps(mount, seed) };
+            for options in [sweeps(mount, seed), sections(mount, seed), dirty] {
+                assert_eq!(codes(&simulate(&options)), [""; 0], "{options:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn one_wrong_pose_is_named_wherever_it_is_and_leaving_it_out_mends_the_answer() {
+    for bad in 0..10 {
+        for options in [sweeps(Mount::OnFlange, 20 + bad as u64), sweeps(Mount::Fixed, 20 + bad as u64)] {
+            let session = simulate(&SimulationOptions { bad_pose_station: Some(bad), ..options.clone() });
+            let (diagnosis, _) = solved(&session);
+            let [finding] = diagnosis.findings.as_slice() else { panic!("{:?} at {bad}", diagnosis.findings) };
+            assert!(matches!(finding.fault, Found::WrongPose { station_idx, .. } if station_idx == bad));
+            assert_eq!(finding.remedy, Some(Remedy::LeaveOut(vec![bad])));
+            let mended = remedy::apply(&session, &Remedy::LeaveOut(vec![bad]));
+            let mut clean = simulate(&options);
+            clean.stations[bad].enabled = false;
+            let error_mm = |session: &Session| {
+                let (_, results) = solved(session);
+                let solution = best_available(&results).expect("a solution");
+                distance_from_truth(solution, session.truth.as_ref().expect("simulated")).workspace_point_mm
+            };
+            // What is left is the clean session without that station, to the last bit.
+            assert!((error_mm(&mended) - error_mm(&clean)).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn several_wrong_poses_are_all_named() {
+    for (num_stations, bad) in [(10, [2, 7].as_slice()), (12, &[0, 5, 11]), (20, &[1, 4, 9, 13, 16, 19])] {
+        for steps in [21, 1] {
+            for seed in 1..=2 {
+                let options = SimulationOptions { num_stations, num_steps: steps, ..sweeps(Mount::OnFlange, seed) };
+                let mut session = simulate(&options);
+                for station in bad {
+                    let wrong = simulate(&SimulationOptions { bad_pose_station: Some(*station), ..options.clone() });
+                    session.stations[*station] = wrong.stations[*station].clone();
+                }
+                let named: Vec<usize> = solved(&session)
+                    .0
+                    .findings
+                    .iter()
+                    .filter_map(|finding| match finding.fault {
+                        Found::WrongPose { station_idx, .. } => Some(station_idx),
+                        _ => None,
+                    })
+                    .collect();
+                let mut sorted = named.clone();
+                sorted.sort_unstable();
+                assert_eq!(sorted, bad, "{num_stations} stations, {steps} steps, seed {seed}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_list_of_poses_that_slipped_by_one_is_found() {
+    for options in [sweeps(Mount::OnFlange, 3), sections(Mount::Fixed, 3)] {
+        let clean = simulate(&options);
+        let num = clean.stations.len();
+        let slipped: Vec<(usize, usize)> = (0..num).map(|idx| (idx, (idx + 1) % num)).collect();
+        let (diagnosis, _) = solved(&remedy::apply(&clean, &Remedy::TakePosesFrom(slipped)));
+        let first = diagnosis.findings.first().expect("a finding");
+        let back: Vec<(usize, usize)> = (0..num).map(|idx| (idx, (idx + num - 1) % num)).collect();
+        assert_eq!(first.remedy, Some(Remedy::TakePosesFrom(back)), "{:?}", first.fault);
+    }
+}
+
+#[test]
+fn where_most_stations_contradict_each_other_that_is_said() {
+    let options = sweeps(Mount::OnFlange, 1);
+    let mut session = simulate(&options);
+    for (station, shift_mm) in session.stations.iter_mut().zip([3.0, -4.0, 5.0, -6.0, 8.0]) {
+        for capture in &mut station.captures {
+            let translation_mm = capture.base_from_flange.translation_mm()
+                + handeye::geometry::Vec3::new(shift_mm, 1.0, -0.5 * shift_mm);
+            capture.base_from_flange =
+                handeye::geometry::Transform::from_parts(translation_mm, capture.base_from_flange.rotation());
+        }
+    }
+    let codes = codes(&session);
+    assert_eq!(codes.first(), Some(&"too-few-clean-stations"), "{codes:?}");
+}
