@@ -36,9 +36,10 @@ pub fn evidence(ui: &mut Ui, height: f32, view: &View<'_>, context: &mut PanelCo
             ui.label(theme::dim(ui, words::READINGS_HINT));
         }
     };
-    widgets::card_with_height(ui, title, height, right, |ui| match &plot {
-        Some(plot) => show(ui, plot, view, context, is_fitted),
-        None => {
+    widgets::card_with_height(ui, title, height, right, |ui| {
+        if let Some(plot) = &plot {
+            show(ui, plot, view, context, is_fitted);
+        } else {
             let has_solution = view.solution().is_some();
             widgets::nothing(ui, if has_solution { words::TOO_FEW_TO_LEAVE_OUT } else { words::NO_SOLUTION });
         }
