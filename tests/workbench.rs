@@ -218,6 +218,17 @@ fn a_bootstrap_runs_on_request_and_is_out_of_date_after_an_edit() {
 }
 
 #[test]
+fn other_ways_to_read_the_poses_are_ranked_on_request() {
+    let mut bench = Bench::new();
+    bench.apply(Command::OpenSample(sample("clean-sweeps.json")));
+    assert!(bench.workbench.readings().last().is_none(), "the poses as given fit");
+    bench.apply(Command::RankReadings);
+    let readings = &bench.workbench.readings().last().expect("ranked").value;
+    assert!(readings.first().is_some_and(|fit| fit.is_as_given), "{readings:?}");
+    assert!(readings.windows(2).all(|pair| pair[0].rms_mm <= pair[1].rms_mm));
+}
+
+#[test]
 fn other_limits_give_another_plan() {
     let mut bench = Bench::new();
     bench.apply(Command::OpenSample(sample("clean-sweeps.json")));

@@ -222,7 +222,7 @@ pub const ACCURACY: &str = "Accuracy";
 /// Row: the point that the headline is about.
 #[must_use]
 pub fn point_at(z_mm: &str) -> String {
-    format!("point at z = {z_mm} mm")
+    format!("at z = {z_mm} mm")
 }
 
 /// The ball that holds it with 95 %.

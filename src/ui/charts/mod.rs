@@ -116,6 +116,7 @@ impl<'a> Chart<'a> {
         let tick_font = egui::FontId::proportional(theme::SMALL_SIZE);
         let title = |text: &str| theme::dim(ui, text).size(theme::SMALL_SIZE);
         let names = self.x_names.map(<[String]>::to_vec);
+        let name_width = self.x_names.map_or(0.0, |names| widest(ui, names, &tick_font));
         let x_axis = AxisHints::new_x()
             .label(title(self.x_title))
             .tick_label_font(tick_font.clone())
@@ -148,7 +149,9 @@ impl<'a> Chart<'a> {
             .grid_color(palette.hairline)
             .grid_fade(0.0)
             .grid_spacing(Rangef::new(GRID_SPACING, GRID_SPACING + 1.0))
-            .x_grid_spacer(move |input| if has_names { whole_marks(&input) } else { marks(&input, X_SPACING_FACTOR) })
+            .x_grid_spacer(
+                move |input| if has_names { whole_marks(&input, name_width) } else { marks(&input, X_SPACING_FACTOR) },
+            )
             .y_grid_spacer(|input| marks(&input, 1.0))
             .custom_x_axes(vec![x_axis])
             .custom_y_axes(vec![y_axis]);
@@ -292,8 +295,20 @@ fn marks(input: &GridInput, factor: f64) -> Vec<GridMark> {
     spaced(input.bounds, step.unwrap_or(smallest))
 }
 
-fn whole_marks(input: &GridInput) -> Vec<GridMark> {
-    spaced(input.bounds, 1.0)
+/// Every name, or every n-th where they are too wide to stand side by side.
+fn whole_marks(input: &GridInput, name_width: f32) -> Vec<GridMark> {
+    // The base step is what a grid line takes.
+    let room = f64::from(GRID_SPACING) / input.base_step_size;
+    let step = (f64::from(name_width) / room).ceil();
+    spaced(input.bounds, if step.is_finite() { step.max(1.0) } else { 1.0 })
+}
+
+/// Width of the widest name with a gap beside it, points.
+fn widest(ui: &Ui, names: &[String], font: &egui::FontId) -> f32 {
+    const GAP: f32 = 10.0;
+    let width =
+        |name: &String| ui.painter().layout_no_wrap(name.clone(), font.clone(), egui::Color32::PLACEHOLDER).size().x;
+    names.iter().map(width).fold(0.0, f32::max) + GAP
 }
 
 fn spaced((low, high): (f64, f64), step: f64) -> Vec<GridMark> {
@@ -323,6 +338,15 @@ mod tests {
         assert_eq!(values.len(), 6, "{values:?}");
         assert!(values.iter().all(|value| (value * 10.0 - (value * 10.0).round()).abs() < 1e-9), "{values:?}");
         assert_eq!(tick(GridMark { value: -0.2, step_size: 0.1 }), "−0.2");
+    }
+
+    #[test]
+    fn names_without_room_are_thinned_evenly() {
+        // Ten points a name, and names of 24.
+        let input = GridInput { bounds: (-0.6, 19.6), base_step_size: f64::from(GRID_SPACING) / 10.0 };
+        let values: Vec<f64> = whole_marks(&input, 24.0).iter().map(|mark| mark.value).collect();
+        assert_eq!(values.len(), 7, "{values:?}");
+        assert!(values.windows(2).all(|pair| (pair[1] - pair[0] - 3.0).abs() < 1e-9), "{values:?}");
     }
 
     #[test]

@@ -18,7 +18,7 @@ const BUTTON_WIDTH: f32 = 76.0;
 /// Room for its residual, points.
 const FIGURE_WIDTH: f32 = 68.0;
 /// Part of the width that its name takes.
-const NAME_PART: f32 = 0.44;
+const NAME_PART: f32 = 0.50;
 /// Height of a bar, points.
 const BAR_HEIGHT: f32 = 12.0;
 
