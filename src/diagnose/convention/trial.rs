@@ -10,11 +10,13 @@ use crate::geometry::{Mat3, Rigid, Vec3};
 
 use super::sections::Section;
 
-/// For a first look the sensor's orientation is sought from so many of the 24 orientations of a cube, the best ones.
+/// For a look the sensor's orientation is sought from so many of the 24 orientations of a cube, the best ones.
 const NUM_STARTS: usize = 4;
 /// So many of the minima that are found are followed then.
 const NUM_MINIMA: usize = 2;
-/// So many when it comes to the sides, from each start.
+/// Rounds of choosing sides and solving again in a look.
+const QUICK_ROUNDS: usize = 3;
+/// So many minima are followed when it comes to a fit.
 const NUM_FOLLOWED: usize = 4;
 /// So many of the solutions are improved side by side.
 const NUM_IMPROVED: usize = 2;
@@ -78,70 +80,75 @@ impl Trials {
 
     /// How far the balls lie from their mean in the sensor frame, RMS, mm; y left out, as its sign may be open.
     pub fn spread_mm(&self) -> f64 {
-        #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 stations")]
-        let scale = 1.0 / self.sections.len() as f64;
+        let scale = 1.0 / self.count();
         let seen = || self.sections.iter().map(|section| Vec3::new(section.x_mm, 0.0, section.z_mm));
         let mean = seen().sum::<Vec3>() * scale;
         (seen().map(|centre| (centre - mean).norm_squared()).sum::<f64>() * scale).sqrt()
     }
 
-    /// A first look: about how well these poses fit, one a section, mm; `None` where they leave the calibration open. Where
-    /// `others` holds poses, each section may take its own of these instead.
-    pub fn glance(&self, poses: &[Rigid], others: Option<&[Rigid]>) -> Option<f64> {
+    /// A first look: the residual with y = 0 where the side is open, mm; `None` where the poses leave the calibration open.
+    /// It is at most what the open y leave, where the poses are right, and far more for most that are not.
+    pub fn first_look(&self, poses: &[Rigid]) -> Option<f64> {
         let geometry = PoseGeometry::with_least_movement(poses, NO_ROTATION).ok()?;
-        let reduced = geometry.reduced(&self.flat());
-        let cost = self
-            .minima(&reduced, NUM_STARTS)
-            .into_iter()
-            .take(NUM_MINIMA)
-            .map(|minimum| {
-                let predicted = self.choices(poses, others, &reduced.state(minimum.flange_from_sensor));
-                [predicted, self.on(Side::Plus, poses), self.on(Side::Minus, poses)]
-                    .map(|choices| self.glance_from(&geometry, poses, others, choices, minimum))
-                    .into_iter()
-                    .fold(f64::INFINITY, f64::min)
-            })
-            .fold(f64::INFINITY, f64::min);
-        #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 stations")]
-        let count = self.sections.len() as f64;
-        Some((cost / count).sqrt()).filter(|rms_mm| rms_mm.is_finite())
+        let least = self.minima(&geometry.reduced(&self.flat()), NUM_STARTS).first()?.cost;
+        Some((least / self.count()).sqrt()).filter(|rms_mm| rms_mm.is_finite())
     }
 
-    fn glance_from(
+    /// A second look, with sides. Where `others` holds poses, each section may take its own of these instead.
+    pub fn second_look(&self, poses: &[Rigid], others: Option<&[Rigid]>) -> Option<Fit> {
+        let geometry = PoseGeometry::with_least_movement(poses, NO_ROTATION).ok()?;
+        let reduced = geometry.reduced(&self.flat());
+        let found = self.minima(&reduced, NUM_STARTS).into_iter().take(NUM_MINIMA).flat_map(|minimum| {
+            let predicted = self.choices(poses, others, &reduced.state(minimum.flange_from_sensor));
+            [predicted, self.on(Side::Plus, poses), self.on(Side::Minus, poses)]
+                .map(|choices| self.settled_quickly(poses, others, choices, minimum))
+        });
+        let (cost, choices) = found.flatten().min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let takes_second = choices.iter().map(|choice| choice.is_second).collect();
+        Some(Fit { rms_mm: (cost / self.count()).sqrt(), takes_second }).filter(|fit| fit.rms_mm.is_finite())
+    }
+
+    /// The least sum of squares, all weights one, and the choices behind it.
+    fn settled_quickly(
         &self,
-        geometry: &PoseGeometry,
         poses: &[Rigid],
         others: Option<&[Rigid]>,
         mut choices: Vec<Choice>,
         start: RotationMinimum,
-    ) -> f64 {
+    ) -> Option<(f64, Vec<Choice>)> {
         let mut rotation = start.flange_from_sensor;
-        let mut cost = f64::INFINITY;
-        let mut chosen_geometry = None;
-        for _ in 0..MAX_ROUNDS {
-            if choices.iter().any(|choice| choice.is_second) {
-                let chosen: Vec<Rigid> = choices.iter().map(|choice| choice.pose).collect();
-                chosen_geometry = PoseGeometry::with_least_movement(&chosen, NO_ROTATION).ok();
-            }
+        let mut best: Option<(f64, Vec<Choice>)> = None;
+        for _ in 0..QUICK_ROUNDS {
+            let chosen: Vec<Rigid> = choices.iter().map(|choice| choice.pose).collect();
             let centres: Vec<Vec3> = choices.iter().map(|choice| choice.centre).collect();
-            let reduced = chosen_geometry.as_ref().unwrap_or(geometry).reduced(&centres);
+            let geometry = PoseGeometry::with_least_movement(&chosen, NO_ROTATION).ok()?;
+            let reduced = geometry.reduced(&centres);
             let minimum = reduced.descend(rotation);
             rotation = minimum.flange_from_sensor;
-            cost = cost.min(minimum.cost);
             let again = self.choices(poses, others, &reduced.state(rotation));
-            if again == choices {
+            let is_settled = again == choices;
+            if best.as_ref().is_none_or(|(cost, _)| minimum.cost < *cost) {
+                best = Some((minimum.cost, choices));
+            }
+            if is_settled {
                 break;
             }
             choices = again;
         }
-        cost
+        best
     }
 
-    /// The best fit with these poses, as for [`Trials::glance`], from all starts.
+    #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 stations")]
+    fn count(&self) -> f64 {
+        self.sections.len() as f64
+    }
+
+    /// The best fit with these poses, `others` as for [`Trials::second_look`], from all starts.
     pub fn fit(&self, poses: &[Rigid], others: Option<&[Rigid]>) -> Option<Fit> {
         let geometry = PoseGeometry::with_least_movement(poses, NO_ROTATION).ok()?;
         let reduced = geometry.reduced(&self.flat());
-        let settled = self.minima(&reduced, self.starts.len()).into_iter().flat_map(|minimum| {
+        let minima = self.minima(&reduced, self.starts.len()).into_iter().take(NUM_FOLLOWED);
+        let settled = minima.flat_map(|minimum| {
             let start = reduced.state(minimum.flange_from_sensor);
             let on_one_side =
                 [Side::Plus, Side::Minus].map(|side| self.settled(poses, others, self.on(side, poses), start));
