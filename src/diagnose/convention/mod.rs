@@ -2,6 +2,12 @@
 //!
 //! The measured sections need no orientation of the robot, so they are the same for all readings; what is left of each
 //! reading is a small problem of one point a station.
+//!
+//! # Limits
+//! A rotation has two triples of numbers. Where only a quaternion is known and neither order keeps its middle angle within a
+//! quarter turn, the triples are chosen station by station with the solution; that may fail, and then nothing is said.
+//! Turning all poses round always leaves the ball nearly still in the sensor, so the second best reading is never worse
+//! than the ball's spread there.
 
 mod candidates;
 mod reading;
