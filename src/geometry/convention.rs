@@ -105,8 +105,8 @@ impl AngleOrder {
         }
     }
 
-    /// The other three numbers (rad) that stand for the same rotation, the first and third within ±π. No rotation vector
-    /// has a direction without length, so there the identity is its own twin.
+    /// The other three numbers (rad) that stand for the same rotation, the first and third angle within ±π. The other way
+    /// round the same axis is longer than π; a rotation vector of no length has no axis, so it stays.
     #[must_use]
     pub fn second_angles(self, angles: [f64; 3]) -> [f64; 3] {
         use std::f64::consts::{PI, TAU};

@@ -48,6 +48,7 @@ fn rotations(session: &Session, sections: &[Section]) -> Vec<RotationReading> {
     let written: Vec<bool> =
         sections.iter().map(|section| capture(session, section).written_angles.is_some()).collect();
     let all_written = written.iter().all(|is_written| *is_written);
+    let any_written = written.iter().any(|is_written| *is_written);
     let mut rotations = vec![RotationReading::AsGiven];
     if !all_written {
         rotations.extend([QuaternionOrder::Xyzw, QuaternionOrder::WxyzReordered].map(RotationReading::Quaternion));
@@ -55,13 +56,16 @@ fn rotations(session: &Session, sections: &[Section]) -> Vec<RotationReading> {
     let froms = if all_written { written_order(session, sections).into_iter().collect() } else { orders_read(session) };
     let makers_first = {
         let mut orders = AngleOrder::ALL;
-        orders.sort_by_key(|order| PoseConvention::of_order(*order).next().is_none());
+        orders.sort_by_key(|order| !has_maker(*order));
         orders
     };
     for from in froms {
         for unit in angle_units(session, sections, from, all_written) {
             for to in makers_first {
                 if to != from || unit != AngleUnit::Degrees {
+                    // Where nobody wrote the numbers, they may as well be listed backwards, as some maker does.
+                    let is_backwards = !any_written && !has_maker(to) && has_maker(to.backwards());
+                    let (from, to) = if is_backwards { (from.backwards(), to.backwards()) } else { (from, to) };
                     let second_at_station_idxs = Vec::new();
                     rotations.push(RotationReading::Angles(AngleReading { from, to, unit, second_at_station_idxs }));
                 }
@@ -69,6 +73,10 @@ fn rotations(session: &Session, sections: &[Section]) -> Vec<RotationReading> {
         }
     }
     rotations
+}
+
+fn has_maker(order: AngleOrder) -> bool {
+    PoseConvention::of_order(order).next().is_some()
 }
 
 fn capture<'a>(session: &'a Session, section: &Section) -> &'a Capture {

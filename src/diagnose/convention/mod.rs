@@ -2,6 +2,12 @@
 //!
 //! The measured sections need no orientation of the robot, so they are the same for all readings; what is left of each
 //! reading is a small problem of one point a station.
+//!
+//! # Limits
+//! A rotation has two triples of numbers. Where only a quaternion is known and neither order keeps its middle angle within a
+//! quarter turn, the triples are chosen station by station with the solution; that may fail, and then nothing is said.
+//! Turning all poses round always leaves the ball nearly still in the sensor, so the second best reading is never worse
+//! than the ball's spread there.
 
 mod candidates;
 mod reading;
@@ -31,10 +37,13 @@ const GOOD_PART_OF_RADIUS: f64 = 0.01;
 const MIN_RATIO: f64 = 4.0;
 /// The chance that one of the wrong readings fits as well as the best one by accident is to be below this.
 const MAX_CHANCE: f64 = 1e-3;
-/// So many of the ways that look best are looked into.
-const NUM_LOOKED_INTO: usize = 20;
-/// So many of the ways that look best then are examined with all care.
-const NUM_EXAMINED: usize = 5;
+/// So many of the ways, the best at first look, get a second one.
+const NUM_LOOKED_AT: usize = 80;
+/// So many of them are fitted then.
+const NUM_FITTED: usize = 12;
+/// So many of these are examined with all care, if their residual is within this ratio of the best one.
+const NUM_EXAMINED: usize = 4;
+const EXAMINED_RATIO: f64 = 4.0;
 /// Ways in the plot.
 const NUM_PLOTTED: usize = 8;
 /// Below this (mm) residuals are rounding.
@@ -45,7 +54,7 @@ const ROUNDING_MM: f64 = 1e-3;
 pub struct ReadingFit {
     /// The way.
     pub reading: PoseReading,
-    /// Other ways that give the same poses or, for the best one, fit as well within the noise.
+    /// Other ways, as simple, that give the same poses or, for the best one, fit as well within the noise.
     pub ties: Vec<PoseReading>,
     /// RMS residual, mm: of one section a station, without the station that fits worst where there are enough; infinite
     /// where the poses, read in this way, leave the calibration open.
@@ -103,7 +112,7 @@ impl<'a> Doctor<'a> {
             return Ok(Vec::new());
         }
         let candidates = candidates(self.session, &self.trials.sections);
-        let total = candidates.len() + 1;
+        let total = candidates.len() + 2;
         let mut tried: Vec<Tried> = Vec::with_capacity(candidates.len());
         for (done, reading) in candidates.into_iter().enumerate() {
             watch.report(done, total)?;
@@ -113,8 +122,7 @@ impl<'a> Doctor<'a> {
                 twin.fit.ties.push(reading);
                 continue;
             }
-            let trials = &self.trials;
-            let (reading, rms_mm) = self.by_best_triples(reading, |poses, others| trials.glance(poses, others));
+            let (reading, rms_mm) = self.by_best_triples(reading);
             if rms_mm.is_some() || is_as_given {
                 let rms_mm = rms_mm.unwrap_or(f64::INFINITY);
                 tried.push(Tried { fit: ReadingFit { reading, ties: Vec::new(), rms_mm, is_as_given }, poses });
@@ -124,12 +132,21 @@ impl<'a> Doctor<'a> {
         let by_residual = |a: &ReadingFit, b: &ReadingFit| a.rms_mm.total_cmp(&b.rms_mm);
         ranking.sort_by(by_residual);
         let trials = &self.trials;
-        self.look_into(&mut ranking, NUM_LOOKED_INTO, |poses, others| trials.fit(poses, others));
+        self.look_into(&mut ranking, NUM_LOOKED_AT, |poses, others| trials.second_look(poses, others));
+        ranking.sort_by(by_residual);
+        watch.report(total - 2, total)?;
+        self.look_into(&mut ranking, NUM_FITTED, |poses, others| trials.fit(poses, others));
         ranking.sort_by(by_residual);
         watch.report(total - 1, total)?;
-        self.look_into(&mut ranking, NUM_EXAMINED, |poses, others| trials.fit_carefully(poses, others));
+        let limit_mm = EXAMINED_RATIO * ranking.first().map_or(0.0, |fit| fit.rms_mm);
+        let num_examined = ranking.partition_point(|fit| fit.rms_mm <= limit_mm);
+        let examined = &mut ranking[..num_examined];
+        self.look_into(examined, NUM_EXAMINED, |poses, others| trials.fit_carefully(poses, others));
         ranking.sort_by(by_residual);
         self.join_ties_of_the_best(&mut ranking);
+        for ReadingFit { reading, ties, .. } in &mut ranking {
+            ties.retain(|tie| tie.num_changes() <= reading.num_changes());
+        }
         Ok(ranking)
     }
 
@@ -164,14 +181,11 @@ impl<'a> Doctor<'a> {
         }
     }
 
-    /// A reading from the triples with the least `residual`, where these are not known.
-    fn by_best_triples(
-        &self,
-        reading: PoseReading,
-        residual: impl Fn(&[Rigid], Option<&[Rigid]>) -> Option<f64>,
-    ) -> (PoseReading, Option<f64>) {
+    /// A reading from the triples with the least residual at first look, where these are not known.
+    fn by_best_triples(&self, reading: PoseReading) -> (PoseReading, Option<f64>) {
+        let residual = |reading: &PoseReading| self.trials.first_look(&self.poses(reading));
         let RotationReading::Angles(angles) = &reading.rotation else {
-            let found = residual(&self.poses(&reading), None);
+            let found = residual(&reading);
             return (reading, found);
         };
         // A controller's middle angle stays within a quarter turn, and so does that of the numbers found again.
@@ -179,8 +193,7 @@ impl<'a> Doctor<'a> {
         let starts = self.starting_triples(angles, is_cardan(angles.from) && is_cardan(angles.to));
         let tried = starts.into_iter().map(|seconds| {
             let start = self.with_seconds(&reading, angles, &seconds);
-            let others = self.with_other_triples(&reading, angles, &seconds);
-            let found = residual(&self.poses(&start), others.as_deref());
+            let found = residual(&start);
             (start, found)
         });
         let or_infinite = |found: Option<f64>| found.unwrap_or(f64::INFINITY);

@@ -10,11 +10,13 @@ use crate::geometry::{Mat3, Rigid, Vec3};
 
 use super::sections::Section;
 
-/// For a first look the sensor's orientation is sought from so many of the 24 orientations of a cube, the best ones.
+/// For a look the sensor's orientation is sought from so many of the 24 orientations of a cube, the best ones.
 const NUM_STARTS: usize = 4;
 /// So many of the minima that are found are followed then.
 const NUM_MINIMA: usize = 2;
-/// So many when it comes to the sides, from each start.
+/// Rounds of choosing sides and solving again in a look.
+const QUICK_ROUNDS: usize = 3;
+/// So many minima are followed when it comes to a fit.
 const NUM_FOLLOWED: usize = 4;
 /// So many of the solutions are improved side by side.
 const NUM_IMPROVED: usize = 2;
@@ -78,82 +80,100 @@ impl Trials {
 
     /// How far the balls lie from their mean in the sensor frame, RMS, mm; y left out, as its sign may be open.
     pub fn spread_mm(&self) -> f64 {
-        #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 stations")]
-        let scale = 1.0 / self.sections.len() as f64;
+        let scale = 1.0 / self.count();
         let seen = || self.sections.iter().map(|section| Vec3::new(section.x_mm, 0.0, section.z_mm));
         let mean = seen().sum::<Vec3>() * scale;
         (seen().map(|centre| (centre - mean).norm_squared()).sum::<f64>() * scale).sqrt()
     }
 
-    /// A first look: about how well these poses fit, one a section, mm; `None` where they leave the calibration open. Where
-    /// `others` holds poses, each section may take its own of these instead.
-    pub fn glance(&self, poses: &[Rigid], others: Option<&[Rigid]>) -> Option<f64> {
+    /// A first look: the residual with y = 0 where the side is open, mm; `None` where the poses leave the calibration open.
+    /// It is at most what the open y leave, where the poses are right, and far more for most that are not.
+    pub fn first_look(&self, poses: &[Rigid]) -> Option<f64> {
         let geometry = PoseGeometry::with_least_movement(poses, NO_ROTATION).ok()?;
-        let reduced = geometry.reduced(&self.flat());
-        let cost = self
-            .minima(&reduced, NUM_STARTS)
-            .into_iter()
-            .take(NUM_MINIMA)
-            .map(|minimum| self.glance_from(&geometry, poses, others, &reduced, minimum))
-            .fold(f64::INFINITY, f64::min);
-        #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 stations")]
-        let count = self.sections.len() as f64;
-        Some((cost / count).sqrt()).filter(|rms_mm| rms_mm.is_finite())
+        let least = self.minima(&geometry.reduced(&self.flat()), NUM_STARTS).first()?.cost;
+        Some((least / self.count()).sqrt()).filter(|rms_mm| rms_mm.is_finite())
     }
 
-    fn glance_from(
+    /// A second look, with sides. Where `others` holds poses, each section may take its own of these instead.
+    pub fn second_look(&self, poses: &[Rigid], others: Option<&[Rigid]>) -> Option<Fit> {
+        let geometry = PoseGeometry::with_least_movement(poses, NO_ROTATION).ok()?;
+        let reduced = geometry.reduced(&self.flat());
+        let found = self.minima(&reduced, NUM_STARTS).into_iter().take(NUM_MINIMA).flat_map(|minimum| {
+            let predicted = self.choices(poses, others, &reduced.state(minimum.flange_from_sensor));
+            [predicted, self.on(Side::Plus, poses), self.on(Side::Minus, poses)]
+                .map(|choices| self.settled_quickly(poses, others, choices, minimum))
+        });
+        let (cost, choices) = found.flatten().min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let takes_second = choices.iter().map(|choice| choice.is_second).collect();
+        Some(Fit { rms_mm: (cost / self.count()).sqrt(), takes_second }).filter(|fit| fit.rms_mm.is_finite())
+    }
+
+    /// The least sum of squares, all weights one, and the choices behind it.
+    fn settled_quickly(
         &self,
-        geometry: &PoseGeometry,
         poses: &[Rigid],
         others: Option<&[Rigid]>,
-        flat: &ReducedProblem<'_>,
+        mut choices: Vec<Choice>,
         start: RotationMinimum,
-    ) -> f64 {
-        let mut choices = self.choices(poses, others, &flat.state(start.flange_from_sensor));
+    ) -> Option<(f64, Vec<Choice>)> {
         let mut rotation = start.flange_from_sensor;
-        let mut cost = f64::INFINITY;
-        let mut chosen_geometry = None;
-        for _ in 0..MAX_ROUNDS {
-            if choices.iter().any(|choice| choice.is_second) {
-                let chosen: Vec<Rigid> = choices.iter().map(|choice| choice.pose).collect();
-                chosen_geometry = PoseGeometry::with_least_movement(&chosen, NO_ROTATION).ok();
-            }
+        let mut best: Option<(f64, Vec<Choice>)> = None;
+        for _ in 0..QUICK_ROUNDS {
+            let chosen: Vec<Rigid> = choices.iter().map(|choice| choice.pose).collect();
             let centres: Vec<Vec3> = choices.iter().map(|choice| choice.centre).collect();
-            let reduced = chosen_geometry.as_ref().unwrap_or(geometry).reduced(&centres);
+            let geometry = PoseGeometry::with_least_movement(&chosen, NO_ROTATION).ok()?;
+            let reduced = geometry.reduced(&centres);
             let minimum = reduced.descend(rotation);
             rotation = minimum.flange_from_sensor;
-            cost = cost.min(minimum.cost);
             let again = self.choices(poses, others, &reduced.state(rotation));
-            if again == choices {
+            let is_settled = again == choices;
+            if best.as_ref().is_none_or(|(cost, _)| minimum.cost < *cost) {
+                best = Some((minimum.cost, choices));
+            }
+            if is_settled {
                 break;
             }
             choices = again;
         }
-        cost
+        best
     }
 
-    /// The best fit with these poses, as for [`Trials::glance`], from all starts.
+    #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 stations")]
+    fn count(&self) -> f64 {
+        self.sections.len() as f64
+    }
+
+    /// The best fit with these poses, `others` as for [`Trials::second_look`], from all starts.
     pub fn fit(&self, poses: &[Rigid], others: Option<&[Rigid]>) -> Option<Fit> {
         let geometry = PoseGeometry::with_least_movement(poses, NO_ROTATION).ok()?;
         let reduced = geometry.reduced(&self.flat());
-        let settled = self.minima(&reduced, self.starts.len()).into_iter();
-        best(settled.filter_map(|minimum| self.settled(poses, others, reduced.state(minimum.flange_from_sensor))))?
-            .fit()
+        let minima = self.minima(&reduced, self.starts.len()).into_iter().take(NUM_FOLLOWED);
+        let settled = minima.flat_map(|minimum| {
+            let start = reduced.state(minimum.flange_from_sensor);
+            let on_one_side =
+                [Side::Plus, Side::Minus].map(|side| self.settled(poses, others, self.on(side, poses), start));
+            on_one_side.into_iter().chain([self.settled_without_y(poses, others, start)]).flatten()
+        });
+        best(settled)?.fit()
     }
 
     /// The same with all that is known against wrong sides: one minimum is the mirror image of the other, and a single
     /// wrong side leaves a minimum of its own.
     pub fn fit_carefully(&self, poses: &[Rigid], others: Option<&[Rigid]>) -> Option<Fit> {
         let geometry = PoseGeometry::with_least_movement(poses, NO_ROTATION).ok()?;
-        let on =
-            |side: Side| self.sections.iter().map(|section| section.centre(section.side.unwrap_or(side))).collect();
         let mut found: Vec<Settled> = Vec::new();
-        for centres in [self.flat(), on(Side::Plus), on(Side::Minus)] {
-            for settled in self.settled_from(&geometry, &centres, poses, others) {
-                if !found.iter().any(|known| known.choices == settled.choices) {
-                    found.push(settled);
-                }
+        let mut keep_new = |settled: Settled| {
+            if !found.iter().any(|known| known.choices == settled.choices) {
+                found.push(settled);
             }
+        };
+        let flat = geometry.reduced(&self.flat());
+        for minimum in self.minima(&flat, self.starts.len()) {
+            let start = flat.state(minimum.flange_from_sensor);
+            self.settled_without_y(poses, others, start).into_iter().for_each(&mut keep_new);
+        }
+        for side in [Side::Plus, Side::Minus] {
+            self.settled_from(&geometry, &self.on(side, poses), poses, others).into_iter().for_each(&mut keep_new);
         }
         found.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         found.truncate(NUM_IMPROVED);
@@ -163,18 +183,22 @@ impl Trials {
         best(improved.into_iter().chain(mirrored))?.fit()
     }
 
+    /// What settles from these choices, with the rotation sought anew.
     fn settled_from(
         &self,
         geometry: &PoseGeometry,
-        centres: &[Vec3],
+        choices: &[Choice],
         poses: &[Rigid],
         others: Option<&[Rigid]>,
     ) -> Vec<Settled> {
-        let reduced = geometry.reduced(centres);
+        let centres: Vec<Vec3> = choices.iter().map(|choice| choice.centre).collect();
+        let reduced = geometry.reduced(&centres);
         self.minima(&reduced, self.starts.len())
             .into_iter()
             .take(NUM_FOLLOWED)
-            .filter_map(|minimum| self.settled(poses, others, reduced.state(minimum.flange_from_sensor)))
+            .filter_map(|minimum| {
+                self.settled(poses, others, choices.to_vec(), reduced.state(minimum.flange_from_sensor))
+            })
             .collect()
     }
 
@@ -182,16 +206,26 @@ impl Trials {
     fn mirrored(&self, poses: &[Rigid], others: Option<&[Rigid]>, settled: &Settled) -> Vec<Settled> {
         let chosen: Vec<Rigid> = settled.choices.iter().map(|choice| choice.pose).collect();
         let Ok(geometry) = PoseGeometry::with_least_movement(&chosen, NO_ROTATION) else { return Vec::new() };
-        let centres: Vec<Vec3> = self
+        let mirrored: Vec<Choice> = self
             .sections
             .iter()
             .zip(&settled.choices)
             .map(|(section, choice)| match section.side {
-                Some(_) => choice.centre,
-                None => Vec3::new(choice.centre.x, -choice.centre.y, choice.centre.z),
+                Some(_) => *choice,
+                None => Choice { centre: Vec3::new(choice.centre.x, -choice.centre.y, choice.centre.z), ..*choice },
             })
             .collect();
-        self.settled_from(&geometry, &centres, poses, others)
+        self.settled_from(&geometry, &mirrored, poses, others)
+    }
+
+    /// All sections with their first pose, those with an open side on this one.
+    fn on(&self, side: Side, poses: &[Rigid]) -> Vec<Choice> {
+        let choice = |(section, pose): (&Section, &Rigid)| Choice {
+            pose: *pose,
+            is_second: false,
+            centre: section.centre(section.side.unwrap_or(side)),
+        };
+        self.sections.iter().zip(poses).map(choice).collect()
     }
 
     /// The centres with y = 0 where the side is open.
@@ -219,8 +253,8 @@ impl Trials {
         minima
     }
 
-    /// Chooses sides and poses by what a solution predicts and solves again, in turn, until nothing changes.
-    fn settled(&self, poses: &[Rigid], others: Option<&[Rigid]>, start: State) -> Option<Settled> {
+    /// What settles from a solution that hardly looks at y where its sign is open.
+    fn settled_without_y(&self, poses: &[Rigid], others: Option<&[Rigid]>, start: State) -> Option<Settled> {
         let open: Vec<CentreObservation> = self
             .sections
             .iter()
@@ -234,7 +268,18 @@ impl Trials {
             })
             .collect();
         let predicting = minimise(&open.iter(), start).ok()?.state;
-        let mut settled = self.solved(self.choices(poses, others, &predicting), predicting, None)?;
+        self.settled(poses, others, self.choices(poses, others, &predicting), predicting)
+    }
+
+    /// Solves with some choices, chooses sides and poses by what that predicts and solves again, until nothing changes.
+    fn settled(
+        &self,
+        poses: &[Rigid],
+        others: Option<&[Rigid]>,
+        choices: Vec<Choice>,
+        start: State,
+    ) -> Option<Settled> {
+        let mut settled = self.solved(choices, start, None)?;
         for _ in 0..MAX_ROUNDS {
             let choices = self.choices(poses, others, &settled.state);
             let left_out = self.worst(&choices, &settled.state);
