@@ -159,11 +159,11 @@ fn exchanged(stations: &Stations<'_>, consensus: &Consensus, accused: &[usize]) 
             <[usize; 1]>::try_from(fitting).ok().map(|[from]| (*to, from))
         })
         .collect();
-    // Whoever gives its poses away needs others.
-    while let Some(at) = pairs.iter().position(|(to, _)| !pairs.iter().any(|(_, from)| from == to)) {
-        pairs.remove(at);
-    }
-    while let Some(at) = pairs.iter().position(|(_, from)| !pairs.iter().any(|(to, _)| to == from)) {
+    // Whoever gives its poses away needs others, and whoever gets some has to have given its own.
+    let is_loose = |pairs: &[(usize, usize)], (to, from): (usize, usize)| {
+        !pairs.iter().any(|(_, other)| *other == to) || !pairs.iter().any(|(other, _)| *other == from)
+    };
+    while let Some(at) = pairs.iter().position(|pair| is_loose(&pairs, *pair)) {
         pairs.remove(at);
     }
     pairs
