@@ -212,7 +212,7 @@ fn sessions_in_order_and_those_with_other_faults_have_no_finding() {
         let clean = session(case);
         assert_eq!(examined(&clean), (None, Vec::new()), "case {case}");
         let mut another_ball = clean.clone();
-        another_ball.target = Target::Ball { radius_mm: 15.6 };
+        another_ball.target = Target::Ball { radius_mm: 15.6, radius_std_mm: None };
         assert_eq!(examined(&another_ball).0, None, "case {case}: a wrong radius is no convention");
     }
     for case in 0..2 {

@@ -99,7 +99,7 @@ fn add_station(session: &mut Session, base_from_flange: &Rigid, num_captures: i3
 }
 
 fn profile(session: &Session, ball: Vec3, noise: &mut Noise) -> Profile {
-    let Target::Ball { radius_mm } = session.target else { panic!("a ball") };
+    let Target::Ball { radius_mm, .. } = session.target else { panic!("a ball") };
     let x_mm: Vec<f64> = (0..120).map(|idx| (f64::from(idx) / 119.0 - 0.5) * 3.0 * radius_mm).collect();
     let z_mm: Vec<Option<f64>> = x_mm
         .iter()

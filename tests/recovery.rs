@@ -164,7 +164,7 @@ fn noise_of_the_orientation_acts_at_the_right_lever_for_both_mounts() {
 fn a_wrong_radius_is_found_by_the_sweeps_and_never_called_good() {
     for (radius_mm, is_wrong) in [(14.9, true), (15.0, false), (15.1, true)] {
         let mut session = simulate(&SimulationOptions::default());
-        session.target = handeye::session::Target::Ball { radius_mm };
+        session.target = handeye::session::Target::ball(radius_mm);
         for method in [Method::BallMaxArc, Method::BallBundle] {
             let solution = solve(&problem(&session), method).expect("a solution");
             let found = solution.warnings.iter().find_map(|warning| match warning {
@@ -259,11 +259,11 @@ fn without_rotation_or_about_one_axis_nothing_is_claimed() {
 fn sections_larger_than_the_ball_are_flagged_and_do_not_stop_anything() {
     let mut session = simulate(&SimulationOptions { section_offset_mm: Some(1.0), num_steps: 1, ..small() });
     // A radius 2 % too small: the sections near the largest are then larger than the ball.
-    session.target = handeye::session::Target::Ball { radius_mm: 0.98 * 15.0 };
+    session.target = handeye::session::Target::ball(0.98 * 15.0);
     let solution = solve(&problem(&session), Method::BallFixedPoint).expect("a solution");
     assert!(solution.warnings.iter().any(|warning| matches!(warning, Warning::ArcLargerThanBall { .. })));
     // Much too small: every profile is refused, with the radius as the reason.
-    session.target = handeye::session::Target::Ball { radius_mm: 10.0 };
+    session.target = handeye::session::Target::ball(10.0);
     let refusal = solve(&problem(&session), Method::BallFixedPoint).expect_err("no usable arc");
     assert!(matches!(refusal, SolveError::TooFewStations { found: 0, .. }), "{refusal}");
     assert!(refusal.to_string().contains("Check the ball's radius"), "{refusal}");

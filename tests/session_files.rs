@@ -151,7 +151,7 @@ fn text_must_be_utf8_and_may_begin_with_a_byte_order_mark() {
 fn the_valid_session_is_read_as_written() {
     let session = valid();
     assert_eq!(session.notes, "line 1\nline 2");
-    assert_eq!(session.target, Target::Ball { radius_mm: 15.0 });
+    assert_eq!(session.target, Target::ball(15.0));
     assert_eq!(session.robot.orientation_std_deg, Some(0.005));
     assert_eq!(session.stations[0].side, SideChoice::Given(Side::Plus));
     assert!(!session.stations[0].enabled && session.stations[1].enabled);

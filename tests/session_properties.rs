@@ -85,7 +85,7 @@ prop_compose! {
             notes,
             robot: Robot { position_std_mm, pose_convention: &PoseConvention::ALL[convention_idx], ..Robot::default() },
             sensor: Sensor::default(),
-            target: Target::Ball { radius_mm },
+            target: Target::Ball { radius_mm, radius_std_mm: position_std_mm },
             mount: if is_fixed { Mount::Fixed } else { Mount::OnFlange },
             stations,
             published,

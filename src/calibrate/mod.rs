@@ -25,6 +25,8 @@ pub use error::SolveError;
 pub use method::{Method, MethodResult, best_available, solution_of, solve, solve_all};
 pub use problem::{BallProblem, Capture, Mount, Noise, Reading, Side, SideChoice, Station};
 pub use reduced::Reduced;
-pub use solution::{EstimatedRadius, NoiseModel, RmsMax, Solution, StationSolution, Sweep, SweepPoint, Uncertainty};
+pub use solution::{
+    AboveStated, EstimatedRadius, NoiseModel, RmsMax, Solution, StationSolution, Sweep, SweepPoint, Uncertainty,
+};
 pub use verdict::{Verdict, VerdictReason};
 pub use warning::Warning;

@@ -49,6 +49,19 @@ impl CentreObservation {
         self.pull - self.information * (state.ball_in_sensor(&self.base_from_flange) - self.centre_in_sensor)
     }
 
+    /// A pull along the directions that the observation knows about, each over its σ: of unit variance if the data are as
+    /// their weights say.
+    pub fn whitened(&self, pull: Vec3) -> impl Iterator<Item = f64> {
+        /// Directions with less than this part of the largest information are blind ones: the rest of the data fits them.
+        const BLIND_PART: f64 = 1e-6;
+        let eigen = self.information.symmetric_eigen();
+        let least = BLIND_PART * eigen.eigenvalues.max();
+        [0, 1, 2]
+            .into_iter()
+            .filter(move |idx| eigen.eigenvalues[*idx] > least)
+            .map(move |idx| eigen.eigenvectors.column(idx).dot(&pull) / eigen.eigenvalues[idx].sqrt())
+    }
+
     /// One measured centre a station, with unit weight.
     #[must_use]
     pub fn points(base_from_flange: &[Rigid], centres_in_sensor: &[Vec3]) -> Vec<Self> {

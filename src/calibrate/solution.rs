@@ -66,6 +66,17 @@ pub struct NoiseModel {
     pub station_orientation_std_rad: f64,
     /// Whether the first two are the session's; otherwise they are estimated from the data.
     pub is_stated: bool,
+    /// By how much the data scatter more than the stated noise; `None` where it is not stated, or nothing is left over.
+    pub above_stated: Option<AboveStated>,
+}
+
+/// The scatter of the data against that by the noise that the session states.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AboveStated {
+    /// Scatter over what is stated; about 1 where the statement is true.
+    pub ratio: f64,
+    /// Probability of so much by chance.
+    pub p_value: f64,
 }
 
 /// The ball's radius where it was estimated along with the calibration.

@@ -21,7 +21,7 @@ pub enum Spread {
         degrees_of_freedom: f64,
     },
     /// The weights are those of the noise, stated or estimated.
-    Modelled(VarianceSpread),
+    Modelled(Box<VarianceSpread>),
 }
 
 impl Spread {
@@ -48,13 +48,7 @@ pub fn uncertainty(
     flange_from_sensor: &Rigid,
     reference_point_in_sensor_mm: Vec3,
 ) -> Uncertainty {
-    let of_unknowns = inverse * spread.factor() + by_radius * by_radius.transpose();
-    let right_covariance = sensor_block(&of_unknowns);
-    let to_flange_axes = to_flange_axes(flange_from_sensor);
-    let covariance = to_flange_axes * right_covariance * to_flange_axes.transpose();
-    let std = |idx: usize| covariance[(idx, idx)].max(0.0).sqrt();
     let by_sensor = point_by_sensor(reference_point_in_sensor_mm);
-    let point_covariance = by_sensor * right_covariance * by_sensor.transpose();
     let degrees_of_freedom = match spread {
         Spread::Scaled { degrees_of_freedom, .. } => *degrees_of_freedom,
         Spread::Modelled(spread) => {
@@ -63,6 +57,12 @@ pub fn uncertainty(
             spread.degrees_of_freedom(inverse, &by_unknowns)
         }
     };
+    let factor = spread.factor() * doubt_in_the_noise(degrees_of_freedom);
+    let right_covariance = sensor_block(&(inverse * factor + by_radius * by_radius.transpose()));
+    let to_flange_axes = to_flange_axes(flange_from_sensor);
+    let covariance = to_flange_axes * right_covariance * to_flange_axes.transpose();
+    let std = |idx: usize| covariance[(idx, idx)].max(0.0).sqrt();
+    let point_covariance = by_sensor * right_covariance * by_sensor.transpose();
     let rotation = flange_from_sensor.rotation.to_rotation_matrix();
     Uncertainty {
         covariance,
@@ -74,6 +74,17 @@ pub fn uncertainty(
         degrees_of_freedom,
         workspace_point_95_mm: distance_quantile(0.95, &point_covariance, degrees_of_freedom),
     }
+}
+
+/// By how much errors vary more where the noise was learnt from the same data: the variance of Student's t.
+fn doubt_in_the_noise(degrees_of_freedom: f64) -> f64 {
+    /// With less the variance is unbounded; twice as much is as good as "hardly known".
+    const LEAST: f64 = 4.0;
+    if degrees_of_freedom.is_infinite() {
+        return 1.0;
+    }
+    let freedom = degrees_of_freedom.max(LEAST);
+    freedom / (freedom - 2.0)
 }
 
 /// The change of a calibration with the radius: of (rotation about the sensor's axes in rad, translation along the flange's

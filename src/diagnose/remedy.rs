@@ -47,7 +47,7 @@ pub fn apply(session: &Session, remedy: &Remedy) -> Session {
         }
         Remedy::ReadPosesAs(reading) => reading.apply(&mut mended),
         Remedy::SetRadius(found_mm) => {
-            if let Target::Ball { radius_mm } = &mut mended.target {
+            if let Target::Ball { radius_mm, .. } = &mut mended.target {
                 *radius_mm = *found_mm;
             }
         }

@@ -49,7 +49,7 @@ impl Measured {
 /// merely gives no arcs.
 pub fn measure(session: &Session, previous: Option<&Measured>, watch: &mut dyn Watch) -> Result<Measured, Cancelled> {
     let ball_radius_mm = match session.target {
-        Target::Ball { radius_mm } => radius_mm,
+        Target::Ball { radius_mm, .. } => radius_mm,
         _ => 0.0,
     };
     let options = ArcOptions { ball_radius_mm, profile_std_mm: session.sensor.profile_std_mm };
@@ -96,8 +96,8 @@ fn found_arc(profile: &Profile, target: &Target, options: &ArcOptions) -> Result
 /// # Errors
 /// [`NotABallSession`] for any other target.
 pub fn ball_problem(session: &Session, measured: &Measured) -> Result<BallProblem, NotABallSession> {
-    let radius_mm = match &session.target {
-        Target::Ball { radius_mm } => *radius_mm,
+    let (radius_mm, radius_std_mm) = match &session.target {
+        Target::Ball { radius_mm, radius_std_mm } => (*radius_mm, *radius_std_mm),
         Target::RightAnglePlate => return Err(NotABallSession { kind: "a right-angle plate" }),
         Target::Point => return Err(NotABallSession { kind: "a point" }),
         Target::Rgbd { .. } => return Err(NotABallSession { kind: "an RGB-D sequence" }),
@@ -134,7 +134,7 @@ pub fn ball_problem(session: &Session, measured: &Measured) -> Result<BallProble
         .collect();
     Ok(BallProblem {
         radius_mm,
-        radius_std_mm: None,
+        radius_std_mm,
         mount: session.mount,
         noise: Noise {
             position_std_mm: session.robot.position_std_mm,

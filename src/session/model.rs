@@ -69,6 +69,8 @@ pub enum Target {
     Ball {
         /// Its radius, mm.
         radius_mm: f64,
+        /// How well it is known, mm; with that the radius is estimated along with the calibration.
+        radius_std_mm: Option<f64>,
     },
     /// Two perpendicular edges.
     RightAnglePlate,
@@ -79,6 +81,14 @@ pub enum Target {
         /// The sequence's folder, relative to the session file.
         sequence: String,
     },
+}
+
+impl Target {
+    /// A ball of a radius (mm) that is taken as exact.
+    #[must_use]
+    pub const fn ball(radius_mm: f64) -> Self {
+        Self::Ball { radius_mm, radius_std_mm: None }
+    }
 }
 
 /// What one capture holds.

@@ -202,7 +202,9 @@ impl Fault {
                 let twice_mm = 2.0 * range_sign * session.sensor.reference_distance_mm.unwrap_or(0.0);
                 change_profiles(session, |x, z| (x, twice_mm - z));
             }
-            Self::WrongRadius => session.target = Target::Ball { radius_mm: options.radius_mm + RADIUS_ERROR_MM },
+            Self::WrongRadius => {
+                session.target = Target::Ball { radius_mm: options.radius_mm + RADIUS_ERROR_MM, radius_std_mm: None }
+            }
             Self::ProfileScale => change_profiles(session, |x, z| (x * PROFILE_SCALE, z * PROFILE_SCALE)),
             Self::StepDiffersFromPose => {
                 for step_mm in captures(session).filter_map(|capture| capture.step_mm.as_mut()) {

@@ -80,7 +80,7 @@ pub fn simulate(options: &SimulationOptions) -> Session {
             reference_distance_mm: Some(80.0),
             unknown: UnknownFields::new(),
         },
-        target: Target::Ball { radius_mm: options.radius_mm },
+        target: Target::ball(options.radius_mm),
         mount: options.mount,
         stations,
         published: None,

@@ -1,10 +1,10 @@
 //! Passes over the data until nothing moves: linearise, weigh by the noise of the poses, minimise, and again.
 
-use crate::calibrate::observation::{CentreObservation, State};
+use crate::calibrate::observation::{CentreObservation, NUM_UNKNOWNS, State};
 use crate::calibrate::reduced::sums_at;
 use crate::calibrate::solver::{Gradient, Minimum, covariance_for_unit_noise, minimise_sums};
-use crate::calibrate::{BallProblem, EstimatedRadius, SolveError};
-use crate::geometry::Mat3;
+use crate::calibrate::{AboveStated, BallProblem, EstimatedRadius, SolveError};
+use crate::geometry::{Mat3, Vec3, stats};
 
 use super::pose_noise::{PoseNoise, marginalised};
 use super::variance_components::VarianceSpread;
@@ -35,6 +35,8 @@ pub(super) struct Settled {
     pub pose_noise: PoseNoise,
     /// How well that noise is known.
     pub spread: VarianceSpread,
+    /// The scatter against what is stated of that noise.
+    pub above_stated: Option<AboveStated>,
     /// The radius, where it was to be estimated.
     pub radius: Option<EstimatedRadius>,
     /// Change of the unknowns with the radius, a mm.
@@ -52,17 +54,47 @@ impl<F: Fn(&State, f64) -> Vec<CentreObservation>> Linearise for F {}
 pub(super) fn settle(linearised: impl Linearise, problem: &BallProblem, start: State) -> Result<Settled, SolveError> {
     let observations = merged(linearised(&start, problem.radius_mm));
     let num_stations = observations.chunk_by(|a, b| a.station == b.station).count();
-    let noise = PoseNoise::of(problem, observations.len() > num_stations, num_stations);
-    let mut settled = settle_at(&linearised, problem.radius_mm, start, noise, true)?;
+    let noise = PoseNoise::of(problem, observations.len());
+    let mut settled = settle_with_noise(&linearised, problem.radius_mm, start, noise, num_stations)?;
     let mut radius_mm = problem.radius_mm;
     if let Some(prior_std_mm) = problem.radius_std_mm.filter(|std| *std > 0.0) {
         let found = estimated_radius(&linearised, problem.radius_mm, prior_std_mm, &settled)?;
         radius_mm = found.radius_mm;
-        settled = settle_at(&linearised, radius_mm, settled.minimum.state, noise, true)?;
+        settled = settle_with_noise(&linearised, radius_mm, settled.minimum.state, noise, num_stations)?;
         settled.radius = Some(found);
     }
     settled.by_radius = change_by_radius(&linearised, radius_mm, &settled)?;
     Ok(settled)
+}
+
+/// With what is common to a station where the stations scatter more than their poses by themselves explain.
+fn settle_with_noise(
+    linearised: &impl Linearise,
+    radius_mm: f64,
+    start: State,
+    noise: PoseNoise,
+    num_stations: usize,
+) -> Result<Settled, SolveError> {
+    /// A variance cannot be found negative, so one that is always looked for makes every σ too large on average.
+    const LOOK_BELOW_P: f64 = 0.2;
+    let settled = settle_at(linearised, radius_mm, start, noise)?;
+    let of_captures = scatter(&capture_residuals(&settled));
+    let of_stations = scatter(&station_residuals(&settled));
+    let above_stated = [of_captures, of_stations]
+        .into_iter()
+        .flatten()
+        .filter(|_| noise.is_stated())
+        .min_by(|a, b| a.p_value.total_cmp(&b.p_value));
+    let has_sweeps = settled.observations.len() > num_stations;
+    let with_common = settled
+        .pose_noise
+        .with_common(has_sweeps, num_stations)
+        .filter(|_| of_stations.is_some_and(|scatter| scatter.p_value < LOOK_BELOW_P));
+    let settled = match with_common {
+        Some(noise) => settle_at(linearised, radius_mm, settled.minimum.state, noise)?,
+        None => settled,
+    };
+    Ok(Settled { above_stated, ..settled })
 }
 
 fn settle_at(
@@ -70,7 +102,6 @@ fn settle_at(
     radius_mm: f64,
     start: State,
     noise: PoseNoise,
-    is_noise_open: bool,
 ) -> Result<Settled, SolveError> {
     let mut noise = noise;
     let mut state = start;
@@ -78,14 +109,14 @@ fn settle_at(
     let mut latest = None;
     for pass in 1..=MAX_PASSES {
         let by_points = merged(linearised(&state, radius_mm));
-        if is_noise_open && (2..=LAST_NOISE_ESTIMATE).contains(&pass) {
+        if noise.is_open() && (2..=LAST_NOISE_ESTIMATE).contains(&pass) {
             spread = noise.estimate(&by_points, &state)?;
         }
         let (observations, common_covariance) = weighted(&by_points, &state, &noise)?;
         let mut minimum = minimise_sums(|state| sums_at(&observations, &common_covariance, state), state)?;
         let moved_mm = movement_mm(&state, &minimum.state);
         state = minimum.state;
-        let settled = moved_mm < SETTLED_MM && (!is_noise_open || pass > LAST_NOISE_ESTIMATE);
+        let settled = moved_mm < SETTLED_MM && (!noise.is_open() || pass > LAST_NOISE_ESTIMATE);
         minimum.converged &= moved_mm < CONVERGED_MM;
         minimum.num_iterations = pass;
         latest = Some(Settled {
@@ -94,6 +125,7 @@ fn settle_at(
             minimum,
             pose_noise: noise,
             spread: spread.clone(),
+            above_stated: None,
             radius: None,
             by_radius: Gradient::zeros(),
         });
@@ -147,13 +179,13 @@ fn estimated_radius(
 ) -> Result<EstimatedRadius, SolveError> {
     let step_mm = RADIUS_STEP_PART * given_mm;
     let prior_information = prior_std_mm.powi(-2);
-    let noise = start.pose_noise;
+    let noise = start.pose_noise.fixed();
     let mut radius_mm = given_mm;
     let mut state = start.minimum.state;
     let mut std_mm = prior_std_mm;
     for _ in 0..RADIUS_ITERATIONS {
         let mut cost_at = |radius_mm: f64| -> Result<f64, SolveError> {
-            let settled = settle_at(linearised, radius_mm, state, noise, false)?;
+            let settled = settle_at(linearised, radius_mm, state, noise)?;
             state = settled.minimum.state;
             Ok(settled.minimum.cost)
         };
@@ -181,6 +213,36 @@ fn change_by_radius(linearised: &impl Linearise, radius_mm: f64, settled: &Settl
     };
     let slope = (gradient_at(radius_mm + step_mm)? - gradient_at(radius_mm - step_mm)?) / (2.0 * step_mm);
     Ok(covariance_for_unit_noise(&settled.minimum.hessian)? * slope)
+}
+
+/// Residuals of the captures over their σ.
+fn capture_residuals(settled: &Settled) -> Vec<f64> {
+    let state = &settled.minimum.state;
+    settled.observations.iter().flat_map(|observation| observation.whitened(observation.pull_at(state))).collect()
+}
+
+/// Residuals of the stations as wholes over their σ. The sensor hardly turns within a station, so its captures' centres are
+/// the same but for the travel.
+fn station_residuals(settled: &Settled) -> Vec<f64> {
+    let state = &settled.minimum.state;
+    settled
+        .observations
+        .chunk_by(|a, b| a.station == b.station)
+        .flat_map(|run| {
+            let information = run.iter().map(|observation| observation.information).sum();
+            let pull: Vec3 = run.iter().map(|observation| observation.pull_at(state)).sum();
+            CentreObservation { information, ..run[0].clone() }.whitened(pull).collect::<Vec<f64>>()
+        })
+        .collect()
+}
+
+/// How much more than of unit variance residuals are; `None` with nothing left over.
+fn scatter(residuals: &[f64]) -> Option<AboveStated> {
+    let freedom = residuals.len().checked_sub(NUM_UNKNOWNS).filter(|freedom| *freedom > 0)?;
+    #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 residuals")]
+    let freedom = freedom as f64;
+    let chi_square: f64 = residuals.iter().map(|residual| residual * residual).sum();
+    Some(AboveStated { ratio: (chi_square / freedom).sqrt(), p_value: stats::chi_squared_p_value(chi_square, freedom) })
 }
 
 fn movement_mm(before: &State, after: &State) -> f64 {

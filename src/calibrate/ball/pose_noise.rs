@@ -6,8 +6,8 @@
 //! is common to a station is integrated out of its sums, see
 //! [`Normal::with_common_shift`](crate::calibrate::solver::Normal::with_common_shift).
 
-use crate::calibrate::observation::{CentreObservation, State};
-use crate::calibrate::{BallProblem, Mount, NoiseModel, SolveError};
+use crate::calibrate::observation::{CentreObservation, NUM_UNKNOWNS, State};
+use crate::calibrate::{AboveStated, BallProblem, Mount, NoiseModel, SolveError};
 use crate::geometry::so3::hat;
 use crate::geometry::{Mat3, Rigid};
 
@@ -15,34 +15,55 @@ use super::variance_components::{Components, NUM_COMPONENTS, VarianceSpread};
 
 /// With fewer stations than this the error common to a station is taken as one of position alone.
 const MIN_STATIONS_FOR_COMMON_ORIENTATION: usize = 8;
+/// With fewer equations left over than this position and orientation are not told apart: one variance of position is
+/// known better than two that share what little there is.
+const MIN_FREEDOM_FOR_ORIENTATION: usize = 30;
 
 /// Variances of position (mm²) and orientation (rad²) about each axis: of every pose by itself, and common to a station.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PoseNoise {
     variances: [f64; NUM_COMPONENTS],
     is_estimated: [bool; NUM_COMPONENTS],
+    is_stated: bool,
     /// Where the robot moves, which is what its orientation turns about.
     pub mount: Mount,
 }
 
 impl PoseNoise {
-    /// As far as the problem states it. The rest is to be estimated; so is what the stations err by beyond what is stated,
-    /// as a robot's repeatability says nothing of its accuracy.
-    pub fn of(problem: &BallProblem, has_sweeps: bool, num_stations: usize) -> Self {
+    /// As far as the problem states it; the rest is to be estimated. Nothing is common to a station.
+    pub fn of(problem: &BallProblem, num_poses: usize) -> Self {
         let (position, orientation) = (problem.noise.position_std_mm, problem.noise.orientation_std_rad);
-        let is_stated = position.is_some() && orientation.is_some();
-        // One pose a station: what is its own and what is the station's look the same.
-        let has_common = has_sweeps || is_stated;
+        let can_tell = (3 * num_poses).saturating_sub(NUM_UNKNOWNS) >= MIN_FREEDOM_FOR_ORIENTATION;
         Self {
             variances: [position, orientation, None, None].map(|std| std.map_or(0.0, |std| std * std)),
-            is_estimated: [
-                position.is_none(),
-                orientation.is_none(),
-                has_common,
-                has_sweeps && num_stations >= MIN_STATIONS_FOR_COMMON_ORIENTATION,
-            ],
+            is_estimated: [position.is_none(), orientation.is_none() && can_tell, false, false],
+            is_stated: position.is_some() && orientation.is_some(),
             mount: problem.mount,
         }
+    }
+
+    /// The same with errors common to a station, to be estimated on top: a robot's repeatability says nothing of its
+    /// accuracy. `None` where they look the same as those of single poses.
+    pub fn with_common(self, has_sweeps: bool, num_stations: usize) -> Option<Self> {
+        let [position, orientation, ..] = self.is_estimated;
+        let has_orientation = has_sweeps && num_stations >= MIN_STATIONS_FOR_COMMON_ORIENTATION;
+        (has_sweeps || self.is_stated)
+            .then_some(Self { is_estimated: [position, orientation, true, has_orientation], ..self })
+    }
+
+    /// The same with nothing left to estimate.
+    pub const fn fixed(self) -> Self {
+        Self { is_estimated: [false; NUM_COMPONENTS], ..self }
+    }
+
+    /// Whether anything is to be estimated.
+    pub fn is_open(&self) -> bool {
+        self.is_estimated.contains(&true)
+    }
+
+    /// Whether all of the noise of single poses is stated.
+    pub const fn is_stated(&self) -> bool {
+        self.is_stated
     }
 
     /// Standard deviation of the position of each pose by itself, mm.
@@ -51,14 +72,15 @@ impl PoseNoise {
     }
 
     /// For the reader.
-    pub fn model(&self) -> NoiseModel {
+    pub fn model(&self, above_stated: Option<AboveStated>) -> NoiseModel {
         let [position, orientation, station_position, station_orientation] = self.variances.map(f64::sqrt);
         NoiseModel {
             position_std_mm: position,
             orientation_std_rad: orientation,
             station_position_std_mm: station_position,
             station_orientation_std_rad: station_orientation,
-            is_stated: !self.is_estimated[0] && !self.is_estimated[1],
+            is_stated: self.is_stated,
+            above_stated,
         }
     }
 

@@ -168,7 +168,7 @@ impl<'a> Components<'a> {
 
     /// What a unit of a component adds to the variance of a centre, about.
     fn size(&self, idx: usize) -> f64 {
-        if idx % 2 == 0 {
+        if idx.is_multiple_of(2) {
             return 3.0;
         }
         self.stations.first().and_then(|station| station.first()).map_or(0.0, |capture| capture.lever.trace())

@@ -1,16 +1,15 @@
 //! Are the residuals those of noise? Anderson and Darling's test on the whitened residuals of all captures.
 //!
 //! # Source
-//! Stephens, "Tests based on EDF statistics", in D'Agostino & Stephens 1986, table 4.9: the mean known, the variance not;
-//! p-values by the formulas for that case fitted to the table's percentage points.
+//! M. A. Stephens in D'Agostino & Stephens, "Goodness-of-fit techniques", 1986, section 4.8: the percentage points for a known
+//! mean and an estimated variance; those above 15 % are from a simulation of our own.
 
+use crate::calibrate::observation::CentreObservation;
 use crate::calibrate::reduced::Reduced;
 use crate::geometry::{Mat3, Vec3, stats};
 
 /// With fewer residuals a test says nothing.
 const MIN_RESIDUALS: usize = 20;
-/// Directions with less than this part of a capture's largest information are blind ones: the rest of the data fits them.
-const BLIND_PART: f64 = 1e-6;
 
 /// Whether the residuals are normally distributed (Anderson and Darling's test on whitened residuals).
 #[derive(Clone, Debug, PartialEq)]
@@ -55,20 +54,14 @@ fn whitened_residuals(reduced: &Reduced) -> Vec<f64> {
         let shift = common_shift(reduced, run, &pulls);
         for (observation, pull) in run.iter().zip(pulls) {
             let pull = pull - observation.information * shift;
-            let eigen = observation.information.symmetric_eigen();
-            let largest = eigen.eigenvalues.max();
-            for (value, direction) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
-                if *value > BLIND_PART * largest {
-                    residuals.push(direction.dot(&pull) / value.sqrt());
-                }
-            }
+            residuals.extend(observation.whitened(pull));
         }
     }
     residuals
 }
 
 /// The likeliest shift that all captures of a station share.
-fn common_shift(reduced: &Reduced, run: &[crate::calibrate::observation::CentreObservation], pulls: &[Vec3]) -> Vec3 {
+fn common_shift(reduced: &Reduced, run: &[CentreObservation], pulls: &[Vec3]) -> Vec3 {
     let covariance = run.first().and_then(|first| reduced.common_covariance.get(first.station));
     let Some(covariance) = covariance else { return Vec3::zeros() };
     let information: Mat3 = run.iter().map(|observation| observation.information).sum();
@@ -94,11 +87,10 @@ fn anderson_darling_p_value(sorted: &[f64]) -> f64 {
         sum += weight * (below + above);
     }
     let statistic = -count - sum / count;
-    // Percentage points with the mean known: 1.760 (15 %), 2.323 (10 %), 3.690 (5 %: 2.8), … lie on a straight line in the
-    // logarithm of the probability.
     p_value_of(statistic)
 }
 
+/// Between the percentage points the logarithm of the probability is nearly straight, and beyond them as well.
 fn p_value_of(statistic: f64) -> f64 {
     const POINTS: [[f64; 2]; 8] = [
         [0.0, 1.0],

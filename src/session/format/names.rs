@@ -37,7 +37,7 @@ pub(super) fn session(target: &Target) -> Vec<&'static str> {
 /// Fields of the target itself.
 pub(super) const fn target(target: &Target) -> &'static [&'static str] {
     match target {
-        Target::Ball { .. } => &["kind", "radius_mm"],
+        Target::Ball { .. } => &["kind", "radius_mm", "radius_std_mm"],
         _ => &["kind"],
     }
 }

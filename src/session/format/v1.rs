@@ -120,7 +120,10 @@ fn target(root: &Object<'_>) -> Result<(Target, UnknownFields), Refusal> {
     let target = match kind {
         Kind::Ball => {
             let radius = object.required("radius_mm", &limits::BALL_RADIUS_MM.to_string())?;
-            Target::Ball { radius_mm: radius.number(&limits::BALL_RADIUS_MM)? }
+            Target::Ball {
+                radius_mm: radius.number(&limits::BALL_RADIUS_MM)?,
+                radius_std_mm: object.optional_number("radius_std_mm", &limits::LENGTH_STD_MM)?,
+            }
         }
         Kind::RightAnglePlate => Target::RightAnglePlate,
         Kind::Point => Target::Point,

@@ -81,8 +81,9 @@ fn target(out: &mut Writer, target: &Target, unknown: Option<&UnknownFields>) {
         Target::Point => names::POINT,
         Target::Rgbd { .. } => names::RGBD,
     });
-    if let Target::Ball { radius_mm } = target {
+    if let Target::Ball { radius_mm, radius_std_mm } = target {
         out.optional_number("radius_mm", Some(*radius_mm));
+        out.optional_number("radius_std_mm", *radius_std_mm);
     }
     out.nested_unknown(unknown, names::target(target));
     out.close();

@@ -147,7 +147,10 @@ pub fn captures(num_profiles: usize, num_points: usize) -> String {
 #[must_use]
 pub fn target(target: &Target) -> String {
     match target {
-        Target::Ball { radius_mm } => format!("ball, radius {radius_mm} mm"),
+        Target::Ball { radius_mm, radius_std_mm: None } => format!("ball, radius {radius_mm} mm"),
+        Target::Ball { radius_mm, radius_std_mm: Some(std_mm) } => {
+            format!("ball, radius {radius_mm} ± {std_mm} mm, to be estimated")
+        }
         Target::RightAnglePlate => "right-angle plate".to_owned(),
         Target::Point => "point".to_owned(),
         Target::Rgbd { sequence } => format!("RGB-D sequence {sequence}"),

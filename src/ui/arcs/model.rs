@@ -241,7 +241,7 @@ pub fn capture_view(
 #[must_use]
 pub const fn ball_radius_mm(session: &Session) -> Option<f64> {
     match session.target {
-        Target::Ball { radius_mm } => Some(radius_mm),
+        Target::Ball { radius_mm, .. } => Some(radius_mm),
         _ => None,
     }
 }

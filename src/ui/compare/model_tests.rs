@@ -24,7 +24,7 @@ fn session() -> Session {
         notes: String::new(),
         robot: Robot::default(),
         sensor: Sensor::default(),
-        target: Target::Ball { radius_mm: 15.0 },
+        target: Target::ball(15.0),
         mount: Mount::OnFlange,
         stations: ["a", "b", "c"].map(station).to_vec(),
         published: None,
