@@ -23,7 +23,7 @@ pub(super) struct Information {
 }
 
 impl Information {
-    pub fn new(hessian: Hessian, point_in_sensor: Vec3) -> Self {
+    pub fn new(hessian: &Hessian, point_in_sensor: Vec3) -> Self {
         let mut point = SMatrix::<f64, NUM_UNKNOWNS, 3>::zeros();
         point.fixed_view_mut::<6, 3>(0, 0).copy_from(&point_by_sensor(point_in_sensor).transpose());
         let mut points = SMatrix::<f64, NUM_UNKNOWNS, 6>::zeros();
@@ -31,7 +31,7 @@ impl Information {
         // Over offsets r in all directions the mean of |ω × r|² is two thirds of |ω|² |r|².
         let turn = Mat3::identity() * (SPREAD_MM * (2.0_f64 / 3.0).sqrt());
         points.fixed_view_mut::<3, 3>(0, 3).copy_from(&turn);
-        Self { hessian, point, points }
+        Self { hessian: *hessian, point, points }
     }
 
     /// With a station more.

@@ -111,9 +111,9 @@ pub fn next_stations(
         .as_ref()
         .map_or_else(|| typical::middle_of_balls(solution), |known| known.reference_point_in_sensor_mm);
     let cell = Cell { mount: problem.mount, state: reduced.state, models: typical::models(reduced, limits)? };
-    let known = Information::new(reduced.hessian, reference_point);
+    let known = Information::new(&reduced.hessian, reference_point);
     let before = known.point_std().ok_or(PlanRefusal::Undetermined)?;
-    let mut search = Search::new(cell, orientations, known, typical::orientations(reduced));
+    let mut search = Search::new(cell, orientations, &known, typical::orientations(reduced));
     // The stated σ knows more about the noise than the information does, so the information gives the ratio only.
     let stated = solution.uncertainty.as_ref().map(|known| known.workspace_point_std_mm);
     let stations = (0..num)
@@ -133,8 +133,8 @@ pub fn next_stations(
 pub fn from_nothing(cell: &RoughCell, limits: &Limits, num: usize) -> Result<Plan, PlanRefusal> {
     let nominal = nominal::Nominal::new(cell, limits)?;
     let orientations = Orientations::new(nominal.reference, limits)?;
-    let prior = Information::new(nominal::prior(), nominal.reference_point_in_sensor);
-    let mut search = Search::new(nominal.cell, orientations, prior, Vec::new());
+    let prior = Information::new(&nominal::prior(), nominal.reference_point_in_sensor);
+    let mut search = Search::new(nominal.cell, orientations, &prior, Vec::new());
     let mut stations = Vec::with_capacity(num);
     for idx in 0..num {
         let point_std = |information: &Information| {

@@ -68,7 +68,7 @@ impl Nominal {
         let at_origin = State { flange_from_sensor: Rigid::identity(), ball_in_base: Vec3::zeros() };
         let about_sensor = about_sensor(&Normal::of(sweep.iter(), &at_origin));
         let balls: Vec<Vec3> = sweep.iter().map(|capture| capture.centre_in_sensor).collect();
-        let model = StationModel::new(&balls, about_sensor, &view).ok_or(PlanRefusal::NothingWithinLimits)?;
+        let model = StationModel::new(&balls, &about_sensor, &view).ok_or(PlanRefusal::NothingWithinLimits)?;
         Ok(Self {
             cell: Cell {
                 mount: rough.mount,

@@ -42,6 +42,10 @@ struct Candidate {
 /// The places of the ball that the grid tries: in the middle, and in the corners of the view.
 const PLACES: [[f64; 2]; 5] = [[0.5, 0.5], [0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]];
 
+/// The reference orientation, with the ball in the middle of the view.
+const UPRIGHT: Candidate =
+    Candidate { orientation: Orientation { tilt: 0.0, azimuth: 0.0, spin: 0.0 }, model_idx: 0, place: PLACES[0] };
+
 /// The state of a plan.
 #[derive(Clone, Debug)]
 pub(super) struct Search {
@@ -54,8 +58,8 @@ pub(super) struct Search {
 
 impl Search {
     /// `taken`: the orientations that were measured at already.
-    pub fn new(cell: Cell, orientations: Orientations, known: Information, taken: Vec<UnitQuaternion<f64>>) -> Self {
-        Self { cell, orientations, known, taken }
+    pub fn new(cell: Cell, orientations: Orientations, known: &Information, taken: Vec<UnitQuaternion<f64>>) -> Self {
+        Self { cell, orientations, known: *known, taken }
     }
 
     /// Plans the station that helps most. `point_std` says what σ to state for what is known then.
@@ -67,17 +71,13 @@ impl Search {
                 let start = self.best_of_grid(&grid, *apart)?;
                 Some(self.refined(start, *apart))
             })
-            .unwrap_or_else(|| self.upright());
+            .unwrap_or(UPRIGHT);
         self.take(best, point_std)
     }
 
     /// Plans a station at the reference orientation.
     pub fn reference(&mut self, point_std: impl Fn(&Information) -> Option<f64>) -> PlannedStation {
-        self.take(self.upright(), point_std)
-    }
-
-    fn upright(&self) -> Candidate {
-        Candidate { orientation: Orientation::default(), model_idx: 0, place: PLACES[0] }
+        self.take(UPRIGHT, point_std)
     }
 
     fn best_of_grid(&self, grid: &[Orientation], apart: f64) -> Option<(Candidate, f64)> {

@@ -22,7 +22,7 @@ pub(super) struct StationModel {
 
 impl StationModel {
     /// From the ball's centre in the sensor frame at each capture; `None` if the ball cannot stay in view.
-    pub fn new(balls_in_sensor: &[Vec3], about_sensor: Matrix6<f64>, view: &View) -> Option<Self> {
+    pub fn new(balls_in_sensor: &[Vec3], about_sensor: &Matrix6<f64>, view: &View) -> Option<Self> {
         let range = |axis: usize, [least, most]: [f64; 2]| {
             let [low, high] = extent(balls_in_sensor.iter().map(|ball| ball[axis]));
             let shift = [least - low, most - high];
@@ -30,7 +30,7 @@ impl StationModel {
         };
         Some(Self {
             first_ball_in_sensor: *balls_in_sensor.first()?,
-            about_sensor,
+            about_sensor: *about_sensor,
             shift_mm: [range(0, view.across_mm)?, range(2, view.along_mm)?],
         })
     }
@@ -84,7 +84,7 @@ pub(super) fn models(reduced: &Reduced, limits: &Limits) -> Result<Vec<StationMo
         .collect();
     let view = View::new(limits, balls.iter().flat_map(|(_, balls)| balls).copied());
     let stations = balls.iter().filter_map(|(station, balls)| {
-        StationModel::new(balls, about_sensor(&reduced.sums_of_station(*station, &reduced.state)), &view)
+        StationModel::new(balls, &about_sensor(&reduced.sums_of_station(*station, &reduced.state)), &view)
     });
     let (plus, minus): (Vec<_>, Vec<_>) = stations.partition(|station| station.first_ball_in_sensor.y >= 0.0);
     let models: Vec<StationModel> = [plus, minus].into_iter().filter_map(median).collect();
