@@ -45,6 +45,9 @@ pub struct Case<'a> {
     pub results: &'a [MethodResult],
 }
 
+/// A residual that falls by more once the poses are read in another way leaves nothing for other suspicions to explain.
+const CLEARLY_MISREAD: f64 = 10.0;
+
 /// Examines a session and its results.
 ///
 /// # Errors
@@ -52,9 +55,11 @@ pub struct Case<'a> {
 pub fn diagnose(case: Case<'_>, watch: &mut dyn Watch) -> Result<Diagnosis, Cancelled> {
     const PARTS: usize = 4;
     watch.report(0, PARTS)?;
-    let mut findings = suspicions(case);
-    watch.report(1, PARTS)?;
     let (misread, readings) = convention::examine(case, watch)?;
+    watch.report(1, PARTS)?;
+    // With all poses misread, looking for single wrong ones takes long and leads nowhere.
+    let is_clear = misread.as_ref().is_some_and(|misread| misread.explains > CLEARLY_MISREAD);
+    let mut findings = if is_clear { geometry::examine(case) } else { suspicions(case) };
     findings.extend(misread);
     watch.report(2, PARTS)?;
     let causes = weighing::causes(case, findings);
