@@ -160,7 +160,8 @@ fn a_capture_taken_twice_at_one_pose_shares_its_error() {
 
 #[test]
 fn the_result_follows_the_radius_as_it_says() {
-    const CHANGE_MM: f64 = 0.02;
+    // Small, as stations that fit worse for a wrong radius would be given a noise in common.
+    const CHANGE_MM: f64 = 0.004;
     for num_steps in [1, 9] {
         let options = SimulationOptions { num_steps, step_mm: 1.8, num_points: 200, ..SimulationOptions::default() };
         let problem = problem(&simulate(&options));
@@ -170,7 +171,7 @@ fn the_result_follows_the_radius_as_it_says() {
             let moved = after.flange_from_sensor.translation_mm() - before.flange_from_sensor.translation_mm();
             let told = before.change_by_radius.fixed_rows::<3>(3) * CHANGE_MM;
             // To first order; the weights follow the estimated noise a little.
-            let tolerance_mm = 0.1 * told.norm() + 1e-3;
+            let tolerance_mm = 0.1 * told.norm() + 2e-4;
             assert!((moved - told).norm() < tolerance_mm, "{method:?}: moved {moved}, told {told}");
         }
     }

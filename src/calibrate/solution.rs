@@ -70,6 +70,14 @@ pub struct NoiseModel {
     pub above_stated: Option<AboveStated>,
 }
 
+impl AboveStated {
+    /// Whether the data refute the statement: far beyond chance, and by more than a careless figure.
+    #[must_use]
+    pub fn is_contradicted(&self) -> bool {
+        self.p_value < 1e-6 && self.ratio > 2.0
+    }
+}
+
 /// The scatter of the data against that by the noise that the session states.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AboveStated {

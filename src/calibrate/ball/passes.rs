@@ -12,7 +12,7 @@ use super::variance_components::VarianceSpread;
 /// The start is near, so a few passes settle it.
 const MAX_PASSES: usize = 30;
 /// Movements below this (mm, or mm at 100 mm of lever) between passes are the end.
-const SETTLED_MM: f64 = 1e-11;
+const SETTLED_MM: f64 = 1e-9;
 /// Movements below this at the last pass still are a solution.
 const CONVERGED_MM: f64 = 1e-6;
 /// The first pass sees the offsets of the start, so the noise is estimated from the second on, and kept from this one so
@@ -77,24 +77,53 @@ fn settle_with_noise(
 ) -> Result<Settled, SolveError> {
     /// A variance cannot be found negative, so one that is always looked for makes every σ too large on average.
     const LOOK_BELOW_P: f64 = 0.2;
-    let settled = settle_at(linearised, radius_mm, start, noise)?;
-    let of_captures = scatter(&capture_residuals(&settled));
-    let of_stations = scatter(&station_residuals(&settled));
-    let above_stated = [of_captures, of_stations]
-        .into_iter()
-        .flatten()
-        .filter(|_| noise.is_stated())
-        .min_by(|a, b| a.p_value.total_cmp(&b.p_value));
+    let mut settled = settle_at(linearised, radius_mm, start, noise)?;
+    let above_stated = noise.is_stated().then(|| above_stated(&settled)).flatten();
+    if let Some(above) = above_stated.filter(AboveStated::is_contradicted) {
+        // Weights by a noise that the data refute would take chance for knowledge.
+        settled = settle_or_scale(linearised, radius_mm, settled, noise.reopened(), above.ratio);
+    }
+    let of_stations = scatter(&station_residuals(&settled)).filter(|scatter| scatter.p_value < LOOK_BELOW_P);
     let has_sweeps = settled.observations.len() > num_stations;
-    let with_common = settled
-        .pose_noise
-        .with_common(has_sweeps, num_stations)
-        .filter(|_| of_stations.is_some_and(|scatter| scatter.p_value < LOOK_BELOW_P));
-    let settled = match with_common {
-        Some(noise) => settle_at(linearised, radius_mm, settled.minimum.state, noise)?,
-        None => settled,
-    };
+    if let Some(scatter) = of_stations
+        && let Some(with_common) = settled.pose_noise.with_common(has_sweeps, num_stations)
+    {
+        settled = settle_or_scale(linearised, radius_mm, settled, with_common, scatter.ratio);
+    }
     Ok(Settled { above_stated, ..settled })
+}
+
+/// Settles anew with a noise that is to be found. Stations that contradict each other wildly have none: then the minimum
+/// stands, and its scatter sets the scale.
+fn settle_or_scale(
+    linearised: &impl Linearise,
+    radius_mm: f64,
+    before: Settled,
+    noise: PoseNoise,
+    ratio: f64,
+) -> Settled {
+    match settle_at(linearised, radius_mm, before.minimum.state, noise) {
+        Ok(found) if found.minimum.converged => found,
+        _ => scaled(before, ratio.max(1.0)),
+    }
+}
+
+/// The same minimum with all noise so many times as large.
+fn scaled(settled: Settled, ratio: f64) -> Settled {
+    let weight = ratio.powi(-2);
+    let observations = settled
+        .observations
+        .into_iter()
+        .map(|observation| CentreObservation {
+            information: observation.information * weight,
+            pull: observation.pull * weight,
+            constant: observation.constant * weight,
+            ..observation
+        })
+        .collect();
+    let minimum =
+        Minimum { hessian: settled.minimum.hessian * weight, cost: settled.minimum.cost * weight, ..settled.minimum };
+    Settled { observations, minimum, pose_noise: settled.pose_noise.scaled(ratio), ..settled }
 }
 
 fn settle_at(
@@ -213,6 +242,14 @@ fn change_by_radius(linearised: &impl Linearise, radius_mm: f64, settled: &Settl
     };
     let slope = (gradient_at(radius_mm + step_mm)? - gradient_at(radius_mm - step_mm)?) / (2.0 * step_mm);
     Ok(covariance_for_unit_noise(&settled.minimum.hessian)? * slope)
+}
+
+/// The scatter against what is stated, of single captures or of whole stations: the less likely one.
+fn above_stated(settled: &Settled) -> Option<AboveStated> {
+    [scatter(&capture_residuals(settled)), scatter(&station_residuals(settled))]
+        .into_iter()
+        .flatten()
+        .min_by(|a, b| a.p_value.total_cmp(&b.p_value))
 }
 
 /// Residuals of the captures over their σ.

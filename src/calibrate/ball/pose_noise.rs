@@ -51,6 +51,16 @@ impl PoseNoise {
             .then_some(Self { is_estimated: [position, orientation, true, has_orientation], ..self })
     }
 
+    /// The same with the noise of single poses to be estimated after all.
+    pub const fn reopened(self) -> Self {
+        Self { is_estimated: [true, true, false, false], ..self }
+    }
+
+    /// Known noise of a size so many times this one.
+    pub fn scaled(self, ratio: f64) -> Self {
+        Self { variances: self.variances.map(|variance| variance * ratio * ratio), ..self.fixed() }
+    }
+
     /// The same with nothing left to estimate.
     pub const fn fixed(self) -> Self {
         Self { is_estimated: [false; NUM_COMPONENTS], ..self }

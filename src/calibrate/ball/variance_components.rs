@@ -132,7 +132,7 @@ impl<'a> Components<'a> {
     /// The variances of greatest likelihood, from a start, and what is known of them.
     ///
     /// # Errors
-    /// [`SolveError::Undetermined`] if the captures leave an unknown free.
+    /// [`SolveError::Undetermined`] if the captures leave an unknown free at variances that were tried.
     pub fn fit(&self, start: [f64; NUM_COMPONENTS]) -> Result<([f64; NUM_COMPONENTS], VarianceSpread), SolveError> {
         let mut variances = start;
         let mut scoring = self.scoring(&variances)?;
