@@ -10,9 +10,12 @@ use handeye::calibrate::ball::bundle::refine;
 use handeye::calibrate::observation::{CentreObservation, State};
 use handeye::calibrate::rotation_start::PoseGeometry;
 use handeye::calibrate::solver::minimise;
-use handeye::calibrate::{Method, solve, solve_all};
+use handeye::calibrate::validation::bootstrap;
+use handeye::calibrate::{Method, best_available, solve, solve_all};
+use handeye::diagnose::{Case, diagnose};
 use handeye::fit::{ArcOptions, CircleMethod, extract_arc};
 use handeye::geometry::{Profile, Rigid, Vec3};
+use handeye::plan::{Limits, next_stations};
 use handeye::session::{Reading, Session, ball_problem, measure, parse, to_json};
 use handeye::simulate::{Dirt, SimulationOptions, simulate};
 use handeye::watch::Unwatched;
@@ -133,5 +136,34 @@ fn sessions(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, circles, hand_eye, sessions);
+/// What follows the methods in the background.
+fn studies(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("studies");
+    group.measurement_time(Duration::from_secs(5)).sample_size(10);
+    let session = session(20, 21, Dirt::default());
+    let measured = measure(&session, None, &mut Unwatched).expect("not cancelled");
+    let problem = ball_problem(&session, &measured).expect("a ball");
+    group.bench_function("20 x 21 x 800, arcs and all methods", |bencher| {
+        bencher.iter(|| {
+            let measured = measure(black_box(&session), None, &mut Unwatched).expect("not cancelled");
+            let problem = ball_problem(&session, &measured).expect("a ball");
+            solve_all(&problem, &Method::ALL, &mut Unwatched)
+        });
+    });
+    let results = solve_all(&problem, &Method::ALL, &mut Unwatched).expect("not cancelled");
+    let solution = best_available(&results).expect("solved");
+    group.bench_function("20 x 21 x 800, diagnosis and validation", |bencher| {
+        let case = Case { session: &session, problem: &problem, results: &results };
+        bencher.iter(|| diagnose(black_box(case), &mut Unwatched));
+    });
+    group.bench_function("20 x 21 x 800, plan of 4 stations", |bencher| {
+        bencher.iter(|| next_stations(black_box(&problem), solution, &Limits::default(), 4));
+    });
+    group.bench_function("20 x 21 x 800, bootstrap of 500", |bencher| {
+        bencher.iter(|| bootstrap(black_box(solution), 500, 1, &mut Unwatched));
+    });
+    group.finish();
+}
+
+criterion_group!(benches, circles, hand_eye, sessions, studies);
 criterion_main!(benches);

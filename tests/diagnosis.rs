@@ -5,7 +5,7 @@ use handeye::app::compare::distance_from_truth;
 use handeye::calibrate::{Method, MethodResult, Mount, best_available, solve_all};
 use handeye::diagnose::{Case, Diagnosis, Fault as Found, Remedy, diagnose, remedy};
 use handeye::geometry::{Transform, Vec3, stats};
-use handeye::session::{Session, ball_problem, measure};
+use handeye::session::{Session, ball_problem, measure, parse, samples};
 use handeye::simulate::{Dirt, Fault, SimulationOptions, simulate};
 use handeye::watch::Unwatched;
 
@@ -147,4 +147,41 @@ fn where_most_stations_contradict_each_other_that_is_said() {
     }
     let codes = codes(&session);
     assert_eq!(codes.first(), Some(&"too-few-clean-stations"), "{codes:?}");
+}
+
+/// Every sample teaches one thing, and the diagnosis says what.
+#[test]
+fn the_samples_are_diagnosed_as_what_they_teach() {
+    let expected: [(&str, &[&str]); 7] = [
+        ("lin-mu-2019-table-1.json", &["few-stations"]),
+        // The printed poses and sensor points are not consistent with each other.
+        ("lin-mu-2019-table-2.json", &["does-not-fit", "few-stations", "not-converged"]),
+        ("clean-sweeps.json", &[]),
+        ("dirty-profiles.json", &[]),
+        ("near-largest-arc.json", &["blind-in-y"]),
+        ("few-rotations.json", &["little-rotation"]),
+        ("one-bad-pose.json", &["wrong-pose"]),
+    ];
+    assert_eq!(samples::ALL.len(), expected.len());
+    for sample in samples::ALL {
+        let session = parse(sample.json.as_bytes(), sample.file_name).expect("a sample");
+        let (_, wanted) = expected.iter().find(|(name, _)| *name == sample.file_name).expect("a known sample");
+        assert_eq!(codes(&session), *wanted, "{}", sample.file_name);
+    }
+}
+
+/// Findings and remedies speak of stations by their place in the session, whatever takes part.
+#[test]
+fn stations_that_take_no_part_do_not_shift_the_blame() {
+    let mut session = simulate(&SimulationOptions { bad_pose_station: Some(6), ..sweeps(Mount::OnFlange, 2) });
+    session.stations[1].enabled = false;
+    session.stations[4].enabled = false;
+    let (diagnosis, _) = solved(&session);
+    let first = diagnosis.findings.first().expect("a finding");
+    assert!(matches!(first.fault, Found::WrongPose { station_idx: 6, .. }), "{:?}", first.fault);
+    assert_eq!(first.remedy, Some(Remedy::LeaveOut(vec![6])));
+    let mended = remedy::apply(&session, &Remedy::LeaveOut(vec![6]));
+    let taking_part: Vec<bool> = mended.stations.iter().map(|station| station.enabled).collect();
+    assert_eq!(taking_part, [true, false, true, true, false, true, false, true, true, true]);
+    assert!(codes(&mended).is_empty(), "{:?}", codes(&mended));
 }

@@ -178,6 +178,11 @@ pub enum Fault {
         /// Probability of such residuals by chance.
         p_value: f64,
     },
+    /// The stations contradict each other, and nothing that was tried says why.
+    DoesNotFit {
+        /// RMS scatter of the ball, mm.
+        scatter_mm: f64,
+    },
     /// No method could compute anything, for a reason of its own.
     NotSolved(SolveError),
     /// What a method warns of, where nothing above says it better.
@@ -210,6 +215,7 @@ impl Fault {
             Self::NoiseAboveStated { .. } => "noise-above-stated",
             Self::HalvesDisagree { .. } => "halves-disagree",
             Self::ResidualsNotNormal { .. } => "residuals-not-normal",
+            Self::DoesNotFit { .. } => "does-not-fit",
             Self::NotSolved(_) => "not-solved",
             Self::Method(warning) => warning.code(),
         }

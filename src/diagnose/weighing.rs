@@ -16,6 +16,8 @@ const MENDS_FROM: f64 = 1.5;
 const HALVES_RATIO: f64 = 3.0;
 /// ... and by this, mm, are worth a finding: below it no application notices.
 const HALVES_MM: f64 = 0.1;
+/// A ball that scatters by more than this part of its radius is not that of one calibration, whatever the noise.
+const FAR_OFF_PART: f64 = 0.1;
 /// Residuals as odd as this by chance once in a hundred million sessions: with many sections the test sees every trace of a
 /// biased flank, which does no harm.
 const NOT_NORMAL_P: f64 = 1e-8;
@@ -59,6 +61,11 @@ pub(super) fn with_warnings(case: Case<'_>, causes: Causes, validation: Option<&
         let remains = |warning: &&Warning| {
             remaining_warnings.as_ref().is_none_or(|left| left.iter().any(|other| other.code() == warning.code()))
         };
+        let is_named = findings.first().is_some_and(|first| first.severity == Severity::Wrong);
+        let is_far_off = solution.scatter.rms_mm > FAR_OFF_PART * case.problem.radius_mm;
+        if is_far_off && !is_named {
+            more.push((Fault::DoesNotFit { scatter_mm: solution.scatter.rms_mm }, Severity::Wrong));
+        }
         more.extend(solution.warnings.iter().filter(|warning| !has_a_fault(warning)).filter(remains).map(|warning| {
             let severity = if warning.casts_doubt() { Severity::Doubtful } else { Severity::Note };
             (Fault::Method(warning.clone()), severity)

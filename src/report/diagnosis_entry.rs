@@ -133,6 +133,7 @@ fn numbers(fault: &Fault) -> Map<String, Value> {
         Fault::HalvesDisagree { median_mm, expected_mm } => {
             json!({ "median_mm": median_mm, "expected_mm": expected_mm })
         }
+        Fault::DoesNotFit { scatter_mm } => json!({ "scatter_mm": scatter_mm }),
         Fault::ResidualsNotNormal { p_value } => json!({ "p_value": p_value }),
         Fault::WrongSides { .. } | Fault::MixedOrder { .. } | Fault::NotSolved(_) | Fault::Method(_) => json!({}),
     };

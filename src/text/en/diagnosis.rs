@@ -71,6 +71,7 @@ pub fn fault_title(fault: &Fault) -> &'static str {
         Fault::NoiseAboveStated { .. } => "More noise than stated",
         Fault::HalvesDisagree { .. } => "Halves disagree",
         Fault::ResidualsNotNormal { .. } => "Errors that are not noise",
+        Fault::DoesNotFit { .. } => "The stations contradict each other",
         Fault::NotSolved(_) => "No result",
         Fault::Method(warning) => warning_title(warning),
     }
@@ -217,6 +218,10 @@ pub fn fault_message(fault: &Fault, session: &Session) -> String {
             "The residuals do not look like noise: they are not normally distributed. By chance this happens {}.",
             chance(*p_value)
         ),
+        Fault::DoesNotFit { scatter_mm } => format!(
+            "The stations contradict each other: the ball scatters by {} mm. No single cause that was tried explains it.",
+            size(*scatter_mm)
+        ),
         Fault::NotSolved(error) => unsolved_message(error, mount),
         Fault::Method(warning) => warning_message(warning),
     }
@@ -294,6 +299,9 @@ pub fn fault_remedy(fault: &Fault, session: &Session) -> String {
         }
         Fault::ResidualsNotNormal { .. } => {
             "Look for bad profiles in Arcs, and at the stations with the largest error."
+        }
+        Fault::DoesNotFit { .. } => {
+            "Check that each profile stands with its own pose, that the ball did not move, and that the poses are the flange's."
         }
         Fault::NotSolved(error) => unsolved_remedy(error),
         Fault::Method(warning) => warning_remedy(warning),
@@ -792,6 +800,7 @@ mod tests {
             Fault::NoiseAboveStated { ratio: 3.2, p_value: 1e-9 },
             Fault::HalvesDisagree { median_mm: 0.8, expected_mm: 0.12 },
             Fault::ResidualsNotNormal { p_value: 0.004 },
+            Fault::DoesNotFit { scatter_mm: 97.2 },
         ];
         faults.extend(unsolved.map(Fault::NotSolved));
         faults.extend(warned.map(Fault::Method));
