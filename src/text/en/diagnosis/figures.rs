@@ -1,0 +1,134 @@
+//! Plots of the evidence, and lines of figures.
+
+use crate::calibrate::validation::{Bootstrap, Influence, Normality, SplitHalf};
+use crate::calibrate::{Mount, Solution, Uncertainty};
+use crate::diagnose::{CurveAxis, Plot};
+use crate::text::digits::{decimals_for, fixed};
+
+use super::words::{along, chance, size};
+
+/// Heading of a plot of the evidence.
+#[must_use]
+pub const fn plot_title(plot: &Plot) -> &'static str {
+    match plot {
+        Plot::Stations(_) => "How far each station's ball is from where the others have it",
+        Plot::Readings(_) => "Residual of each way to read the poses",
+        Plot::Curve { axis: CurveAxis::RadiusMm, .. } => "Residual over the ball's radius",
+        Plot::Curve { axis: CurveAxis::ProfileScale, .. } => "Residual over the scale of the profiles",
+        Plot::Trend { .. } => "Shift of the ball in the order of recording",
+        Plot::Direction { .. } => "Rotation about the three axes of the flange",
+        Plot::Steps(_) => "Travel by the poses over commanded travel",
+    }
+}
+
+/// Titles of a plot's axes: across, upwards.
+#[must_use]
+pub const fn plot_axes(plot: &Plot) -> [&'static str; 2] {
+    match plot {
+        Plot::Stations(_) => ["station", "error / mm"],
+        Plot::Readings(_) => ["residual / mm", ""],
+        Plot::Curve { axis: CurveAxis::RadiusMm, .. } => ["radius / mm", "residual / mm"],
+        Plot::Curve { axis: CurveAxis::ProfileScale, .. } => ["factor", "residual / mm"],
+        Plot::Trend { .. } => ["station", "shift / mm"],
+        Plot::Direction { .. } => ["axis", "rotation / °"],
+        Plot::Steps(_) => ["commanded / mm", "by the poses / mm"],
+    }
+}
+
+/// Calibrations from two halves of the stations.
+#[must_use]
+pub fn split_half_line(halves: &SplitHalf) -> String {
+    format!(
+        "two halves of the stations: {} mm apart (median), at most {} mm; {} mm is to be expected",
+        size(halves.median_mm),
+        size(halves.max_mm),
+        size(halves.expected_mm)
+    )
+}
+
+/// Whether the residuals look like noise.
+#[must_use]
+pub fn normality_line(normality: &Normality) -> String {
+    if normality.p_value < 0.01 {
+        return format!("residuals: not normally distributed; by chance this happens {}", chance(normality.p_value));
+    }
+    format!("residuals: normally distributed (p = {:.2})", normality.p_value)
+}
+
+/// The station that the result depends on most.
+#[must_use]
+pub fn influence_line(influence: &Influence) -> String {
+    format!(
+        "most influential: station {}; leaving it out moves the workspace point by {} mm (studentised residual {:.1})",
+        influence.label,
+        size(influence.moves_workspace_point_mm),
+        influence.studentised_residual
+    )
+}
+
+/// The spread over stations drawn with replacement.
+#[must_use]
+pub fn bootstrap_line(bootstrap: &Bootstrap) -> String {
+    let num_solved = bootstrap.distances_mm.len();
+    let failed = match bootstrap.num_failed {
+        0 => String::new(),
+        num_failed => format!("; {num_failed} gave no result"),
+    };
+    if num_solved == 0 {
+        return format!("bootstrap: none of {} draws gave a result", bootstrap.num_failed);
+    }
+    format!(
+        "bootstrap, {} draws: ± {} mm at the workspace point, 95 % within {} mm{failed}",
+        num_solved + bootstrap.num_failed,
+        size(bootstrap.std_mm),
+        size(bootstrap.within_95_mm)
+    )
+}
+
+/// How well the workspace point is known, and where worst.
+#[must_use]
+pub fn accuracy_line(uncertainty: &Uncertainty, mount: Mount) -> String {
+    let (weakest, std_mm) = uncertainty.weakest_direction();
+    format!(
+        "workspace point: 95 % within {} mm; weakest {}, ± {} mm",
+        size(uncertainty.workspace_point_95_mm),
+        along(weakest, mount),
+        size(std_mm)
+    )
+}
+
+/// How the result follows the ball's radius.
+#[must_use]
+pub fn radius_line(solution: &Solution) -> String {
+    /// A step that a calliper shows, mm.
+    const STEP_MM: f64 = 0.01;
+    let change = solution.change_by_radius * STEP_MM;
+    format!(
+        "per {STEP_MM} mm of radius the workspace point moves by {} mm, the translation by {} mm, the rotation by {}°",
+        size(solution.workspace_point_by_radius.norm() * STEP_MM),
+        size(change.fixed_rows::<3>(3).norm()),
+        size(change.fixed_rows::<3>(0).norm().to_degrees())
+    )
+}
+
+/// The station that would help most; position (mm) and angles (degrees) as the robot names them.
+#[must_use]
+pub fn next_pose_line(position: &str, angles: &str, before_mm: Option<f64>, after_mm: Option<f64>) -> String {
+    let brings = before_mm.zip(after_mm).map_or_else(String::new, |(before_mm, after_mm)| {
+        let decimals = decimals_for(Some(after_mm)).min(4);
+        format!(": ± {} → {} mm at the workspace point", fixed(before_mm, decimals), fixed(after_mm, decimals))
+    });
+    format!("next pose: {position}, {angles}{brings}")
+}
+
+/// Heading of what to do first.
+#[must_use]
+pub fn next_step_line(remedy: &str) -> String {
+    format!("next step: {remedy}")
+}
+
+/// The figure of a finding.
+#[must_use]
+pub fn residual_falls([as_given_mm, mended_mm]: [f64; 2]) -> String {
+    format!("(residual {} → {} mm)", size(as_given_mm), size(mended_mm))
+}
