@@ -5,10 +5,9 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, sync_channel};
 
-use handeye::app::verdict::Reason;
-use handeye::app::{Command, NoticeKind, Workbench, verdict_with};
+use handeye::app::{Command, NoticeKind, Workbench};
 use handeye::calibrate::{Method, Solution, Verdict, verdict::judge};
-use handeye::diagnose::{Diagnosis, Evidence, Fault, Finding, Remedy, Severity};
+use handeye::diagnose::{Diagnosis, Evidence, Fault, Finding, Reason, Remedy, Severity, verdict_with};
 use handeye::plan::Limits;
 use handeye::session;
 

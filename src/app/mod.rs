@@ -5,10 +5,8 @@ pub mod command;
 pub mod compare;
 pub mod jobs;
 pub mod study;
-pub mod verdict;
 pub mod workbench;
 
 pub use command::Command;
 pub use study::{Found, Study};
-pub use verdict::verdict_with;
 pub use workbench::{Document, Notice, NoticeKind, Progress, Results, Workbench};

@@ -12,11 +12,13 @@ pub mod hypotheses;
 mod model;
 pub mod remedy;
 pub mod stations;
+mod verdict;
 mod weighing;
 
 pub use convention::{PoseReading, ReadingFit};
 pub use finding::{Axis, CurveAxis, Evidence, Fault, Finding, Plot, Severity, StationBar};
 pub use remedy::Remedy;
+pub use verdict::{Reason, verdict_with};
 
 use crate::calibrate::validation::{Validation, validate};
 use crate::calibrate::{BallProblem, MethodResult, best_available};
@@ -32,6 +34,24 @@ pub struct Diagnosis {
     pub readings: Vec<ReadingFit>,
     /// How much the best available solution can be relied on; `None` without one.
     pub validation: Option<Validation>,
+}
+
+impl Diagnosis {
+    /// Whether it makes sense to plan further stations from the result: not while something else is wrong with it than
+    /// that the orientations are too much alike, which further stations mend.
+    #[must_use]
+    pub fn allows_planning(&self) -> bool {
+        self.findings.first().is_none_or(|first| {
+            first.severity != Severity::Wrong
+                || matches!(
+                    first.fault,
+                    Fault::NoRotation { .. }
+                        | Fault::LittleRotation { .. }
+                        | Fault::OneAxis { .. }
+                        | Fault::TwinPoses { .. }
+                )
+        })
+    }
 }
 
 /// Everything that a suspicion may look at.

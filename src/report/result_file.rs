@@ -2,8 +2,8 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::calibrate::verdict::judge;
-use crate::calibrate::{Method, MethodResult, Mount, Solution, StationSolution, Uncertainty, Warning};
+use crate::calibrate::{Method, MethodResult, Mount, NoiseModel, Solution, StationSolution, Uncertainty, Warning};
+use crate::diagnose::{Diagnosis, verdict_with};
 use crate::geometry::{Frame, Transform};
 use crate::plan::Plan;
 use crate::session::Session;
@@ -24,11 +24,12 @@ pub const VERSION: u32 = 1;
 /// left out are listed as not used.
 #[must_use]
 pub fn result_file(session: &Session, results: &[MethodResult], examination: Option<&Examination<'_>>) -> Value {
+    let diagnosis = examination.map(|found| found.diagnosis);
     let mut file = json!({
         "format": FORMAT,
         "version": VERSION,
         "session": session.name,
-        "methods": results.iter().map(|result| method_entry(session, result)).collect::<Vec<_>>(),
+        "methods": results.iter().map(|result| method_entry(session, result, diagnosis)).collect::<Vec<_>>(),
     });
     if let Some(examination) = examination {
         file["diagnosis"] = diagnosis_entry(session, examination);
@@ -49,9 +50,9 @@ pub fn plan_file(session: &Session, plan: &Plan, method: Option<Method>) -> Valu
     })
 }
 
-fn method_entry(session: &Session, result: &MethodResult) -> Value {
+fn method_entry(session: &Session, result: &MethodResult, diagnosis: Option<&Diagnosis>) -> Value {
     match &result.outcome {
-        Ok(solution) => solution_entry(session, solution),
+        Ok(solution) => solution_entry(session, solution, diagnosis),
         Err(error) => json!({
             "method": result.method.id(),
             "status": "failed",
@@ -60,7 +61,7 @@ fn method_entry(session: &Session, result: &MethodResult) -> Value {
     }
 }
 
-fn solution_entry(session: &Session, solution: &Solution) -> Value {
+fn solution_entry(session: &Session, solution: &Solution, diagnosis: Option<&Diagnosis>) -> Value {
     let names = Names::of(solution.mount);
     let mut entry = Map::new();
     entry.insert("method".to_owned(), json!(solution.method.id()));
@@ -78,13 +79,18 @@ fn solution_entry(session: &Session, solution: &Solution) -> Value {
         "uncertainty".to_owned(),
         solution.uncertainty.as_ref().map_or(Value::Null, |known| uncertainty(known, solution)),
     );
-    let (verdict, reason) = judge(solution);
+    let (verdict, reason) = verdict_with(solution, diagnosis);
     entry.insert(
         "verdict".to_owned(),
         json!({
             "rating": text::verdict_id(verdict),
-            "reason": text::verdict_line(verdict, reason, &solution.warnings),
+            "reason": text::verdict_line(verdict, reason, &solution.warnings, session),
         }),
+    );
+    entry.insert("noise".to_owned(), solution.noise.as_ref().map_or(Value::Null, noise));
+    entry.insert(
+        "estimated_radius".to_owned(),
+        solution.radius.map_or(Value::Null, |radius| json!({ "radius_mm": radius.radius_mm, "std_mm": radius.std_mm })),
     );
     entry.insert("rotation_span_deg".to_owned(), json!(solution.rotation_span_rad.to_degrees()));
     entry.insert(
@@ -150,6 +156,17 @@ fn uncertainty(uncertainty: &Uncertainty, solution: &Solution) -> Value {
             "translation_mm_per_mm": vector(by_radius.fixed_rows::<3>(3).into_owned()),
             "rotation_deg_per_mm": vector(rotation_by_radius),
         },
+    })
+}
+
+fn noise(noise: &NoiseModel) -> Value {
+    json!({
+        "position_std_mm": noise.position_std_mm,
+        "orientation_std_deg": noise.orientation_std_rad.to_degrees(),
+        "station_position_std_mm": noise.station_position_std_mm,
+        "station_orientation_std_deg": noise.station_orientation_std_rad.to_degrees(),
+        "is_stated": noise.is_stated,
+        "above_stated": noise.above_stated.map(|above| json!({ "ratio": above.ratio, "p_value": above.p_value })),
     })
 }
 

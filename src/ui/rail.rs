@@ -3,9 +3,8 @@
 use egui::{Align2, CornerRadius, Rect, Role, Sense, TextStyle, Ui, WidgetInfo, vec2};
 
 use crate::app::Workbench;
-use crate::app::verdict_with;
 use crate::calibrate::Verdict;
-use crate::diagnose::Severity;
+use crate::diagnose::{Severity, verdict_with};
 use crate::text::methods::verdict_mark;
 use crate::text::shell as words;
 

@@ -61,6 +61,8 @@ fn figures(solution: &Solution, examination: &Examination<'_>) -> Vec<String> {
         examination.bootstrap.map(words::bootstrap_line),
         solution.uncertainty.as_ref().map(|uncertainty| words::accuracy_line(uncertainty, solution.mount)),
         Some(words::radius_line(solution)),
+        solution.radius.as_ref().map(words::estimated_radius_line),
+        solution.noise.as_ref().map(words::noise_line),
     ]
     .into_iter()
     .flatten()

@@ -110,7 +110,8 @@ fn solved(args: &SolveArgs, session: &Session) -> Result<ExitCode, String> {
         format!("{:#}\n", result_file(session, &results, examination.as_ref()))
     } else {
         let section = examination.as_ref().map(|found| diagnosis::section(session, &results, found));
-        tables::tables(session, &problem, &results) + &section.unwrap_or_default()
+        tables::tables(session, &problem, &results, found.as_ref().map(|found| &found.diagnosis))
+            + &section.unwrap_or_default()
     };
     Ok(printed(&text, session, &results, found.as_ref().map(|found| &found.diagnosis)))
 }
@@ -142,7 +143,9 @@ impl Found {
             }
             None => None,
         };
-        let plan = best.and_then(|solution| next_stations(problem, solution, &Limits::default(), NUM_PLANNED).ok());
+        let plan = best
+            .filter(|_| diagnosis.allows_planning())
+            .and_then(|solution| next_stations(problem, solution, &Limits::default(), NUM_PLANNED).ok());
         Ok(Self { diagnosis, plan, bootstrap })
     }
 

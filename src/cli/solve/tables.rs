@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use crate::app::compare::{distance_from_truth, improvement, maximum_error_mm};
-use crate::calibrate::verdict::judge;
 use crate::calibrate::{BallProblem, Method, MethodResult, Mount, Solution};
+use crate::diagnose::{Diagnosis, verdict_with};
 use crate::report::digits::{decimals_for, fixed, signed};
 use crate::session::Session;
 use crate::text;
@@ -12,7 +12,12 @@ use crate::text;
 /// Everything about the results, for a terminal 100 columns wide.
 ///
 /// Writing to a string does not fail, hence the `ok()`s.
-pub fn tables(session: &Session, problem: &BallProblem, results: &[MethodResult]) -> String {
+pub fn tables(
+    session: &Session,
+    problem: &BallProblem,
+    results: &[MethodResult],
+    diagnosis: Option<&Diagnosis>,
+) -> String {
     let mut out = String::new();
     let num_profiles: usize = problem.stations.iter().map(|station| station.captures.len()).sum();
     writeln!(
@@ -28,7 +33,7 @@ pub fn tables(session: &Session, problem: &BallProblem, results: &[MethodResult]
     overview(&mut out, session, results);
     for result in results {
         match &result.outcome {
-            Ok(solution) => method_section(&mut out, session, solution),
+            Ok(solution) => method_section(&mut out, session, solution, diagnosis),
             Err(error) => {
                 writeln!(
                     out,
@@ -101,11 +106,11 @@ fn overview(out: &mut String, session: &Session, results: &[MethodResult]) {
     }
 }
 
-fn method_section(out: &mut String, session: &Session, solution: &Solution) {
+fn method_section(out: &mut String, session: &Session, solution: &Solution, diagnosis: Option<&Diagnosis>) {
     let method: Method = solution.method;
     writeln!(out, "\n{} ({})", text::method_name(method), method.id()).ok();
-    let (verdict, reason) = judge(solution);
-    writeln!(out, "  {}", text::verdict_line(verdict, reason, &solution.warnings)).ok();
+    let (verdict, reason) = verdict_with(solution, diagnosis);
+    writeln!(out, "  {}", text::verdict_line(verdict, reason, &solution.warnings, session)).ok();
     calibration(out, session, solution);
     out.push_str(
         "  station  side      ball in sensor / mm            ball in base / mm          error from first / mm    left out\n",

@@ -1,13 +1,20 @@
 //! What the commands print.
 
 use crate::calibrate::{Method, Mount, Verdict, VerdictReason, Warning};
+use crate::diagnose::Reason;
+use crate::session::Session;
 
+use super::diagnosis::fault_message;
 use super::{method_short_name, plural, verdict_name, warning_message};
 
 /// The verdict with its reason, in one line.
 #[must_use]
-pub fn verdict_line(verdict: Verdict, reason: VerdictReason, warnings: &[Warning]) -> String {
+pub fn verdict_line(verdict: Verdict, reason: Reason<'_>, warnings: &[Warning], session: &Session) -> String {
     let name = verdict_name(verdict);
+    let reason = match reason {
+        Reason::Solution(reason) => reason,
+        Reason::Finding(finding) => return format!("{name}: {}", fault_message(&finding.fault, session)),
+    };
     match reason {
         VerdictReason::WorkspacePoint(std_mm) => {
             format!("{name}: a point in the workspace is known to ± {std_mm:.2} mm (1 σ, 3D)")

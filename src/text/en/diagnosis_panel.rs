@@ -304,6 +304,8 @@ pub fn now_at(std_mm: &str) -> String {
 
 /// While planning.
 pub const PLANNING: &str = "planning …";
+/// While the result is one to be mended.
+pub const NO_PLAN_YET: &str = "Mend the first finding; poses planned from a wrong result lead nowhere.";
 /// Before there is a plan.
 pub const NO_PLAN: &str = "A plan needs a calibration to start from; the findings say what is missing.";
 /// Column.

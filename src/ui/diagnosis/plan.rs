@@ -4,6 +4,7 @@ use egui::{DragValue, Frame, Margin, RichText, Role, Ui, WidgetInfo, vec2};
 use egui_extras::Column;
 
 use crate::app::Command;
+use crate::diagnose::Diagnosis;
 use crate::plan::{Limits, Plan};
 use crate::text::diagnosis_panel as words;
 use crate::ui::figures::std_text;
@@ -25,7 +26,8 @@ const MAX_TILT_DEG: f64 = 80.0;
 
 /// Shows the card.
 pub fn show(ui: &mut Ui, height: f32, view: &View<'_>, commands: &mut Vec<Command>) {
-    let plan = view.plan.value.and_then(|plan| plan.as_ref().ok());
+    let is_sensible = view.diagnosis.value.is_none_or(Diagnosis::allows_planning);
+    let plan = view.plan.value.and_then(|plan| plan.as_ref().ok()).filter(|_| is_sensible);
     let right = |ui: &mut Ui| {
         ui.spacing_mut().interact_size.y = 22.0;
         ui.spacing_mut().button_padding = vec2(8.0, 2.0);
@@ -47,6 +49,9 @@ pub fn show(ui: &mut Ui, height: f32, view: &View<'_>, commands: &mut Vec<Comman
     widgets::card_with_height(ui, words::NEXT_POSES, height, right, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         limits(ui, view, commands);
+        if !is_sensible {
+            return widgets::nothing(ui, words::NO_PLAN_YET);
+        }
         match (view.plan.value, plan) {
             (_, Some(plan)) => poses(ui, view, plan),
             (Some(Err(refusal)), None) if view.solution().is_some() => widgets::nothing(ui, &refusal.to_string()),

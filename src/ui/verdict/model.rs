@@ -1,8 +1,7 @@
 //! What the band says, made without egui.
 
-use crate::app::verdict::{Reason, verdict_with};
 use crate::calibrate::{Method, MethodResult, Solution, Verdict, best_available};
-use crate::diagnose::{Diagnosis, Remedy, Severity};
+use crate::diagnose::{Diagnosis, Reason, Remedy, Severity, verdict_with};
 use crate::plan::Plan;
 use crate::session::Session;
 use crate::text;

@@ -1,11 +1,11 @@
 //! Plots of the evidence, and lines of figures.
 
 use crate::calibrate::validation::{Bootstrap, Influence, Normality, SplitHalf};
-use crate::calibrate::{Mount, Solution, Uncertainty};
+use crate::calibrate::{EstimatedRadius, Mount, NoiseModel, Solution, Uncertainty};
 use crate::diagnose::{CurveAxis, Plot};
 use crate::text::digits::{decimals_for, fixed};
 
-use super::words::{along, chance, size};
+use super::words::{along, chance, size, with_std};
 
 /// Heading of a plot of the evidence.
 #[must_use]
@@ -95,6 +95,33 @@ pub fn accuracy_line(uncertainty: &Uncertainty, mount: Mount) -> String {
         along(weakest, mount),
         size(std_mm)
     )
+}
+
+/// The noise of the robot that the weights stand for.
+#[must_use]
+pub fn noise_line(noise: &NoiseModel) -> String {
+    let angle = |std_rad: f64| size(std_rad.to_degrees());
+    let source = if noise.is_stated { "stated" } else { "estimated" };
+    let common = if noise.station_position_std_mm > 0.0 || noise.station_orientation_std_rad > 0.0 {
+        format!(
+            "; common to the captures of a station {} mm, {}°",
+            size(noise.station_position_std_mm),
+            angle(noise.station_orientation_std_rad)
+        )
+    } else {
+        String::new()
+    };
+    format!(
+        "noise of the robot, {source}: {} mm, {}° a pose{common}",
+        size(noise.position_std_mm),
+        angle(noise.orientation_std_rad)
+    )
+}
+
+/// The radius that was estimated along with the calibration.
+#[must_use]
+pub fn estimated_radius_line(radius: &EstimatedRadius) -> String {
+    format!("radius of the ball, estimated: {} mm", with_std(radius.radius_mm, radius.std_mm))
 }
 
 /// How the result follows the ball's radius.

@@ -1,7 +1,8 @@
 //! The verdict on a solution in the light of the diagnosis.
 
 use crate::calibrate::{Solution, Verdict, VerdictReason, verdict};
-use crate::diagnose::{Diagnosis, Finding, Severity};
+
+use super::{Diagnosis, Finding, Severity};
 
 /// What the verdict rests on.
 #[derive(Clone, Copy, Debug, PartialEq)]
