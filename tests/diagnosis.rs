@@ -185,3 +185,42 @@ fn stations_that_take_no_part_do_not_shift_the_blame() {
     assert_eq!(taking_part, [true, false, true, true, false, true, false, true, true, true]);
     assert!(codes(&mended).is_empty(), "{:?}", codes(&mended));
 }
+
+/// A list of poses that lost one and so slipped: the last station has nobody's pose and cannot be mended.
+#[test]
+fn a_slipped_list_that_lost_a_pose_leaves_the_last_station_out() {
+    let clean = simulate(&sweeps(Mount::OnFlange, 4));
+    let mut slipped = clean.clone();
+    for idx in (1..slipped.stations.len()).rev() {
+        for (capture, other) in slipped.stations[idx].captures.iter_mut().zip(&clean.stations[idx - 1].captures) {
+            capture.base_from_flange = other.base_from_flange;
+        }
+    }
+    // The first pose is doubled, the last one is lost.
+    let (diagnosis, _) = solved(&slipped);
+    let first = diagnosis.findings.first().expect("a finding");
+    let mended = remedy::apply(&slipped, first.remedy.as_ref().expect("a remedy"));
+    let (after, results) = solved(&mended);
+    assert!(!mended.stations.last().expect("ten").enabled, "{:?}", first.fault);
+    assert!(after.findings.is_empty(), "{:?}", after.findings);
+    let error =
+        distance_from_truth(best_available(&results).expect("solved"), clean.truth.as_ref().expect("simulated"));
+    assert!(error.workspace_point_mm < 0.1, "{} mm", error.workspace_point_mm);
+}
+
+/// The same without a word about the robot's noise, which then has to be found in spite of the fault.
+#[test]
+fn faults_come_first_where_no_noise_is_stated() {
+    for fault in
+        [Fault::WrongRadius, Fault::ProfileScale, Fault::WrongPose, Fault::Drift, Fault::ToolFrame, Fault::MixedOrder]
+    {
+        for seed in 1..=2 {
+            let options = SimulationOptions { fault: Some(fault), ..sweeps(Mount::OnFlange, seed) };
+            let mut session = simulate(&options);
+            session.robot.position_std_mm = None;
+            session.robot.orientation_std_deg = None;
+            let codes = codes(&session);
+            assert_eq!(codes.first(), Some(&fault.id()), "seed {seed}: {codes:?}");
+        }
+    }
+}

@@ -288,6 +288,7 @@ fn rough(session: &Session, looks_along_in_base: Vec3) -> RoughCell {
         flange_from_sensor: truth.flange_from_sensor.rigid() * off,
         ball_in_base_mm: truth.ball_in_base_mm + Vec3::new(-8.0, 9.0, 8.0),
         radius_mm: 15.0,
+        noise: handeye::calibrate::Noise::default(),
         looks_along_in_base,
     }
 }

@@ -316,6 +316,7 @@ impl Workbench {
             Command::CancelBootstrap => self.bootstrap.cancel(),
             Command::SetPlanLimits(limits) => {
                 self.plan_limits = limits;
+                self.plan.clear();
                 self.start_planning();
             }
             Command::DismissNotice(id) => self.notices.retain(|notice| notice.id != id),

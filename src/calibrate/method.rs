@@ -3,7 +3,7 @@
 use crate::watch::{Cancelled, Watch};
 
 use super::ball;
-use super::{BallProblem, Solution, SolveError};
+use super::{BallProblem, Solution, SolveError, Warning};
 
 /// A way to compute `flange_from_sensor`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -86,10 +86,16 @@ pub fn solution_of(results: &[MethodResult], method: Method) -> Option<&Solution
     results.iter().find(|result| result.method == method).and_then(|result| result.outcome.as_ref().ok())
 }
 
-/// The solution to use: of the bundle, else of the whole curve, else of the fixed point, else of the published stop.
+/// The solution to use: of the bundle, else of the whole curve, else of the fixed point, else of the published stop; one that
+/// did not settle only if none did.
 #[must_use]
 pub fn best_available(results: &[MethodResult]) -> Option<&Solution> {
-    [Method::BallBundle, Method::BallMaxArc, Method::BallFixedPoint, Method::BallMaxArcStep]
-        .into_iter()
-        .find_map(|method| solution_of(results, method))
+    let solutions = || {
+        [Method::BallBundle, Method::BallMaxArc, Method::BallFixedPoint, Method::BallMaxArcStep]
+            .into_iter()
+            .filter_map(|method| solution_of(results, method))
+    };
+    let has_settled =
+        |solution: &&Solution| !solution.warnings.iter().any(|warning| matches!(warning, Warning::NotConverged { .. }));
+    solutions().find(has_settled).or_else(|| solutions().next())
 }

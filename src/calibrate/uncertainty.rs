@@ -72,7 +72,12 @@ pub fn uncertainty(
         reference_point_in_sensor_mm,
         workspace_point_covariance: rotation.matrix() * point_covariance * rotation.matrix().transpose(),
         degrees_of_freedom,
-        workspace_point_95_mm: distance_quantile(0.95, &point_covariance, degrees_of_freedom),
+        // The quantile carries the doubt in the noise itself.
+        workspace_point_95_mm: distance_quantile(
+            0.95,
+            &(point_covariance / doubt_in_the_noise(degrees_of_freedom)),
+            degrees_of_freedom,
+        ),
     }
 }
 

@@ -4,15 +4,20 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use crate::calibrate::{BallProblem, Method, MethodResult, best_available, solve_all};
+use crate::diagnose::{Case, diagnose};
 use crate::geometry::{PoseConvention, Rigid, Vec3};
 use crate::plan::{Limits, Plan, RoughCell, from_nothing, next_stations};
 use crate::report::digits::fixed;
 use crate::report::result_file::plan_file;
 use crate::session::{self, Session, ball_problem, measure};
 use crate::text::cli as words;
+use crate::text::diagnosis::fault_message;
 use crate::watch::Unwatched;
 
 use super::{EXIT_NOTHING_COMPUTED, EXIT_WRONG_INPUT, fail};
+
+/// Beyond, the laser grazes the ball.
+const MAX_TILT_DEG: f64 = 80.0;
 
 /// Arguments of `handeye plan`.
 #[derive(Clone, Debug, clap::Args)]
@@ -25,10 +30,10 @@ pub struct PlanArgs {
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..=100))]
     pub stations: u16,
     /// Most tilt of the range axis from the middle of the stations, degrees
-    #[arg(long, value_name = "DEG", default_value_t = Limits::default().max_tilt_deg, value_parser = finite)]
+    #[arg(long, value_name = "DEG", default_value_t = Limits::default().max_tilt_deg, value_parser = tilt)]
     pub max_tilt_deg: f64,
     /// Most turn about the range axis, either way, degrees
-    #[arg(long, value_name = "DEG", default_value_t = Limits::default().max_spin_deg, value_parser = finite)]
+    #[arg(long, value_name = "DEG", default_value_t = Limits::default().max_spin_deg, value_parser = spin)]
     pub max_spin_deg: f64,
     /// Least and greatest distance of the ball's centre along the range axis, mm; as in the session if not given
     #[arg(long, num_args = 2, value_names = ["MIN", "MAX"], value_parser = finite)]
@@ -85,6 +90,11 @@ fn planned(args: &PlanArgs, session: &Session) -> Result<(Plan, Option<Method>),
     let num = usize::from(args.stations);
     let limits = limits(args);
     if let Some(solution) = best_available(&results) {
+        let case = Case { session, problem: &problem, results: &results };
+        let diagnosis = diagnose(case, &mut Unwatched).map_err(|cancelled| cancelled.to_string())?;
+        if let Some(first) = diagnosis.findings.first().filter(|_| !diagnosis.allows_planning()) {
+            return Err(words::mend_before_planning(first.fault.code(), &fault_message(&first.fault, session)));
+        }
         let plan = next_stations(&problem, solution, &limits, num).map_err(|refusal| refusal.to_string())?;
         return Ok((plan, Some(solution.method)));
     }
@@ -121,6 +131,7 @@ fn rough_cell(args: &PlanArgs, session: &Session, problem: &BallProblem) -> Opti
         flange_from_sensor: Rigid::from_parts(Vec3::new(x, y, z).into(), rotation),
         ball_in_base_mm: Vec3::from_column_slice(args.ball_at.as_deref()?),
         radius_mm: problem.radius_mm,
+        noise: problem.noise,
         looks_along_in_base: Vec3::from_column_slice(&args.looks_along),
     })
 }
@@ -142,6 +153,19 @@ fn table(session: &Session, plan: &Plan, method: Option<Method>) -> String {
     }
     out.push_str(&words::plan_foot(session.mount, convention.label));
     out
+}
+
+fn tilt(text: &str) -> Result<f64, String> {
+    within(text, MAX_TILT_DEG)
+}
+
+fn spin(text: &str) -> Result<f64, String> {
+    within(text, 180.0)
+}
+
+fn within(text: &str, most: f64) -> Result<f64, String> {
+    let value = finite(text)?;
+    if (0.0..=most).contains(&value) { Ok(value) } else { Err(format!("expected 0 to {most}")) }
 }
 
 fn finite(text: &str) -> Result<f64, String> {

@@ -20,7 +20,8 @@ pub enum Remedy {
     SetRadius(f64),
     /// Sides of the ball's centre.
     SetSides(Vec<(usize, SideChoice)>),
-    /// `(station, station whose poses it gets)`, all at once.
+    /// `(station, station whose poses it gets)`, all at once. A station whose poses go to another and that gets none is left
+    /// out: nobody knows where it was.
     TakePosesFrom(Vec<(usize, usize)>),
     /// All profiles (and reduced points) times this factor.
     ScaleProfiles(f64),
@@ -62,10 +63,18 @@ pub fn apply(session: &Session, remedy: &Remedy) -> Session {
             for (to, from) in pairs {
                 let Some(source) = session.stations.get(*from) else { continue };
                 let Some(station) = mended.stations.get_mut(*to) else { continue };
+                if station.captures.len() != source.captures.len() {
+                    continue;
+                }
                 for (capture, other) in station.captures.iter_mut().zip(&source.captures) {
                     capture.base_from_flange = other.base_from_flange;
                     capture.written_angles = other.written_angles;
                 }
+            }
+            for (idx, station) in mended.stations.iter_mut().enumerate() {
+                let gives = pairs.iter().any(|(_, from)| *from == idx);
+                let gets = pairs.iter().any(|(to, _)| *to == idx);
+                station.enabled &= gets || !gives;
             }
         }
         Remedy::ScaleProfiles(factor) => change_readings(&mut mended, |x, z| (x * factor, z * factor)),

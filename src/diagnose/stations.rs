@@ -12,6 +12,8 @@ use super::remedy::Remedy;
 const WORTH_NAMING_MM: f64 = 0.05;
 /// A contradiction is also far beyond what the others show.
 const WORTH_NAMING_RATIO: f64 = 3.0;
+/// Every station is tried against all others; beyond this many that takes longer than anybody waits.
+const MAX_STATIONS: usize = 400;
 /// Poses that differ by less were not measured anew: far below the noise of any arm (mm, rad).
 const SAME_POSE: f64 = 1e-5;
 
@@ -19,6 +21,9 @@ const SAME_POSE: f64 = 1e-5;
 #[must_use]
 pub fn examine(case: Case<'_>) -> Vec<Finding> {
     let num_stations = case.problem.stations.len();
+    if num_stations > MAX_STATIONS {
+        return Vec::new();
+    }
     let Some((stations, consensus)) = Stations::new(case.problem).consensus() else {
         return Vec::new();
     };
@@ -150,6 +155,7 @@ fn exchanged(stations: &Stations<'_>, consensus: &Consensus, accused: &[usize]) 
                 .iter()
                 .copied()
                 .filter(|from| from != to)
+                .filter(|from| stations.readings[*from].station.captures.len() == station.captures.len())
                 .filter(|from| {
                     let poses = poses_of(stations.readings[*from].station);
                     stations.reading(station, &poses).is_some_and(|reading| Stations::fits(&reading, consensus))
@@ -173,6 +179,10 @@ fn exchanged(stations: &Stations<'_>, consensus: &Consensus, accused: &[usize]) 
 fn shifted_order(case: Case<'_>) -> Option<Finding> {
     let stations = &case.problem.stations;
     let num = stations.len();
+    let has_same_captures = stations.windows(2).all(|pair| pair[0].captures.len() == pair[1].captures.len());
+    if !has_same_captures {
+        return None;
+    }
     [1, num.saturating_sub(1)].into_iter().find_map(|shift| {
         let mut problem = case.problem.clone();
         for (idx, station) in problem.stations.iter_mut().enumerate() {
@@ -186,8 +196,14 @@ fn shifted_order(case: Case<'_>) -> Option<Finding> {
         if !consensus.is_credible() || agreeing + 1 < shifted.readings.len() {
             return None;
         }
-        let poses_from: Vec<(usize, usize)> =
-            (0..num).map(|idx| (stations[idx].idx, stations[(idx + shift) % num].idx)).collect();
+        let is_lost = |station_idx: usize| {
+            let of_station = shifted.readings.iter().position(|reading| reading.station.idx == station_idx);
+            of_station.is_some_and(|reading| !consensus.agrees[reading])
+        };
+        let poses_from: Vec<(usize, usize)> = (0..num)
+            .map(|idx| (stations[idx].idx, stations[(idx + shift) % num].idx))
+            .filter(|(to, _)| !is_lost(*to))
+            .collect();
         Some(finding(
             Fault::MixedOrder { poses_from: poses_from.clone() },
             bars(&shifted, &consensus, &[]),

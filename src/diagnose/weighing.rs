@@ -12,12 +12,16 @@ use super::{Case, remedy, suspicions};
 
 /// A remedy that lowers the residual by less has not shown that it mends anything.
 const MENDS_FROM: f64 = 1.5;
+/// Stations without which the residual falls by less do not stand out from the rest.
+const STANDS_OUT_FROM: f64 = 1.15;
 /// Halves of the stations that differ by so many times what they should, ...
 const HALVES_RATIO: f64 = 3.0;
 /// ... and by this, mm, are worth a finding: below it no application notices.
 const HALVES_MM: f64 = 0.1;
 /// A ball that scatters by more than this part of its radius is not that of one calibration, whatever the noise.
 const FAR_OFF_PART: f64 = 0.1;
+/// Nor is one by more than this, mm; below it a poor robot and a small ball may do it.
+const FAR_OFF_MM: f64 = 1.0;
 /// Residuals as odd as this by chance once in a hundred million sessions: with many sections the test sees every trace of a
 /// biased flank, which does no harm.
 const NOT_NORMAL_P: f64 = 1e-8;
@@ -62,7 +66,7 @@ pub(super) fn with_warnings(case: Case<'_>, causes: Causes, validation: Option<&
             remaining_warnings.as_ref().is_none_or(|left| left.iter().any(|other| other.code() == warning.code()))
         };
         let is_named = findings.first().is_some_and(|first| first.severity == Severity::Wrong);
-        let is_far_off = solution.scatter.rms_mm > FAR_OFF_PART * case.problem.radius_mm;
+        let is_far_off = solution.scatter.rms_mm > (FAR_OFF_PART * case.problem.radius_mm).max(FAR_OFF_MM);
         if is_far_off && !is_named {
             more.push((Fault::DoesNotFit { scatter_mm: solution.scatter.rms_mm }, Severity::Wrong));
         }
@@ -142,7 +146,7 @@ fn is_same(a: &Fault, b: &Fault) -> bool {
 
 /// Tries the remedies of all stations that contradict the rest: together, as one of two wrong ones hides what the other
 /// one does.
-fn weigh_stations(case: Case<'_>, findings: &mut [Finding]) {
+fn weigh_stations(case: Case<'_>, findings: &mut Vec<Finding>) {
     let Some(first) = findings.iter().find(|finding| is_about_stations(&finding.fault)) else { return };
     let as_given = best_available(case.results).and_then(|best| residual_mm(case.problem, best.reduced.state));
     let mended = mended_session(case.session, first, findings);
@@ -151,6 +155,11 @@ fn weigh_stations(case: Case<'_>, findings: &mut [Finding]) {
         residual_mm(&problem, solved.into_iter().flatten().next()?.reduced.state)
     });
     let (Some(as_given), Some(after)) = (as_given, after) else { return };
+    if as_given < STANDS_OUT_FROM * after {
+        // Without them the rest fits no better, so they are no worse than the rest.
+        findings.retain(|finding| !is_about_stations(&finding.fault));
+        return;
+    }
     for finding in findings.iter_mut().filter(|finding| is_about_stations(&finding.fault)) {
         finding.evidence.residual_mm = Some([as_given, after]);
         finding.explains = as_given / after.max(1e-9);

@@ -15,7 +15,7 @@ mod typical;
 use thiserror::Error;
 
 use crate::calibrate::ball::MIN_STATIONS;
-use crate::calibrate::{BallProblem, Mount, Solution};
+use crate::calibrate::{BallProblem, Mount, Noise, Solution};
 use crate::geometry::{Base, Flange, Rigid, Transform, Vec3};
 
 use information::Information;
@@ -89,6 +89,8 @@ pub struct RoughCell {
     pub ball_in_base_mm: Vec3,
     /// The ball's radius, mm.
     pub radius_mm: f64,
+    /// The robot's noise as far as it is stated; that of a good arm otherwise.
+    pub noise: Noise,
     /// The direction in the base along which the sensor looks at the ball in the middle of all stations; in the flange for
     /// [`Mount::Fixed`].
     pub looks_along_in_base: Vec3,

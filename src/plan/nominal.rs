@@ -90,8 +90,10 @@ fn sweep(rough: &RoughCell, standoff_mm: f64) -> Vec<CentreObservation> {
         Mount::OnFlange => rough.flange_from_sensor * nalgebra::Point3::new(0.0, 0.0, standoff_mm),
         Mount::Fixed => rough.ball_in_base_mm.into(),
     };
-    let turned_mm = ORIENTATION_STD_DEG.to_radians() * ball_in_flange.coords.norm();
-    let pose_covariance = Mat3::identity() * (POSITION_STD_MM.powi(2) + turned_mm.powi(2) * 2.0 / 3.0);
+    let orientation_std_rad = rough.noise.orientation_std_rad.unwrap_or_else(|| ORIENTATION_STD_DEG.to_radians());
+    let position_std_mm = rough.noise.position_std_mm.unwrap_or(POSITION_STD_MM);
+    let turned_mm = orientation_std_rad * ball_in_flange.coords.norm();
+    let pose_covariance = Mat3::identity() * (position_std_mm.powi(2) + turned_mm.powi(2) * 2.0 / 3.0);
     (0..NUM_CAPTURES)
         .map(|idx| {
             let y_mm = rough.radius_mm * (FIRST_SECTION_RADII - STEP_RADII * f64::from(idx));

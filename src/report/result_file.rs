@@ -2,7 +2,9 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::calibrate::{Method, MethodResult, Mount, NoiseModel, Solution, StationSolution, Uncertainty, Warning};
+use crate::calibrate::{
+    Method, MethodResult, Mount, NoiseModel, Solution, StationSolution, Uncertainty, Warning, best_available,
+};
 use crate::diagnose::{Diagnosis, verdict_with};
 use crate::geometry::{Frame, Transform};
 use crate::plan::Plan;
@@ -29,6 +31,7 @@ pub fn result_file(session: &Session, results: &[MethodResult], examination: Opt
         "format": FORMAT,
         "version": VERSION,
         "session": session.name,
+        "answer": best_available(results).map(|solution| solution.method.id()),
         "methods": results.iter().map(|result| method_entry(session, result, diagnosis)).collect::<Vec<_>>(),
     });
     if let Some(examination) = examination {

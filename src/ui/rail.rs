@@ -121,7 +121,8 @@ fn mark(workbench: &Workbench, selection: &Selection, step: Step) -> Mark {
     };
     let counted = |number: usize| match number {
         0 => Mark::Fine("✔".to_owned()),
-        number => Mark::Look(format!("{number} !")),
+        number @ 1..=9 => Mark::Look(format!("{number} !")),
+        _ => Mark::Look("9+ !".to_owned()),
     };
     match step {
         Step::Session => Mark::Fine("✔".to_owned()),

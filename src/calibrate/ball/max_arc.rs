@@ -96,6 +96,10 @@ pub(super) fn radius_warning_at(problem: &BallProblem, state: &State) -> Option<
 }
 
 fn radius_warning(problem: &BallProblem, sweeps: &[Sweep]) -> Option<Warning> {
+    if problem.radius_std_mm.is_some() {
+        // It is estimated.
+        return None;
+    }
     let (found_mm, std_mm) = radius_from_sweeps(sweeps)?;
     let difference_mm = (found_mm - problem.radius_mm).abs();
     let is_wrong = difference_mm > RADIUS_AT_STDS * std_mm && difference_mm > RADIUS_PART * problem.radius_mm;

@@ -15,6 +15,8 @@ const MAX_PASSES: usize = 30;
 const SETTLED_MM: f64 = 1e-9;
 /// Movements below this at the last pass still are a solution.
 const CONVERGED_MM: f64 = 1e-6;
+/// So are movements below this part of the robot's noise: the result is known far less well.
+const CONVERGED_PART: f64 = 0.01;
 /// The first pass sees the offsets of the start, so the noise is estimated from the second on, and kept from this one so
 /// that the passes can settle.
 const LAST_NOISE_ESTIMATE: usize = 4;
@@ -55,9 +57,17 @@ pub(super) fn settle(linearised: impl Linearise, problem: &BallProblem, start: S
     let observations = merged(linearised(&start, problem.radius_mm));
     let num_stations = observations.chunk_by(|a, b| a.station == b.station).count();
     let noise = PoseNoise::of(problem, observations.len());
-    let mut settled = settle_with_noise(&linearised, problem.radius_mm, start, noise, num_stations)?;
     let mut radius_mm = problem.radius_mm;
-    if let Some(prior_std_mm) = problem.radius_std_mm.filter(|std| *std > 0.0) {
+    let mut start = start;
+    let prior_std_mm = problem.radius_std_mm.filter(|std| *std > 0.0);
+    if let Some(prior_std_mm) = prior_std_mm {
+        // With a noise found at a wrong radius, that radius would pass for noise; so it is sought with a usual one first.
+        let settled = settle_at(&linearised, radius_mm, start, noise.nominal())?;
+        start = settled.minimum.state;
+        radius_mm = estimated_radius(&linearised, problem.radius_mm, prior_std_mm, &settled)?.radius_mm;
+    }
+    let mut settled = settle_with_noise(&linearised, radius_mm, start, noise, num_stations)?;
+    if let Some(prior_std_mm) = prior_std_mm {
         let found = estimated_radius(&linearised, problem.radius_mm, prior_std_mm, &settled)?;
         radius_mm = found.radius_mm;
         settled = settle_with_noise(&linearised, radius_mm, settled.minimum.state, noise, num_stations)?;
@@ -77,7 +87,11 @@ fn settle_with_noise(
 ) -> Result<Settled, SolveError> {
     /// A variance cannot be found negative, so one that is always looked for makes every σ too large on average.
     const LOOK_BELOW_P: f64 = 0.2;
-    let mut settled = settle_at(linearised, radius_mm, start, noise)?;
+    let mut settled = settle_at(linearised, radius_mm, start, noise.nominal())?;
+    if noise.is_open() {
+        let ratio = scatter(&capture_residuals(&settled)).map_or(1.0, |scatter| scatter.ratio);
+        settled = settle_or_scale(linearised, radius_mm, settled, noise, ratio);
+    }
     let above_stated = noise.is_stated().then(|| above_stated(&settled)).flatten();
     if let Some(above) = above_stated.filter(AboveStated::is_contradicted) {
         // Weights by a noise that the data refute would take chance for knowledge.
@@ -146,7 +160,7 @@ fn settle_at(
         let moved_mm = movement_mm(&state, &minimum.state);
         state = minimum.state;
         let settled = moved_mm < SETTLED_MM && (!noise.is_open() || pass > LAST_NOISE_ESTIMATE);
-        minimum.converged &= moved_mm < CONVERGED_MM;
+        minimum.converged &= moved_mm < CONVERGED_MM.max(CONVERGED_PART * noise.largest_std_mm());
         minimum.num_iterations = pass;
         latest = Some(Settled {
             observations,
@@ -192,10 +206,11 @@ fn weighted(
 ) -> Result<WeightedObservations, SolveError> {
     let observations =
         by_points.iter().map(|observation| marginalised(observation, state, noise)).collect::<Result<_, _>>()?;
-    let common_covariance = by_points
-        .chunk_by(|a, b| a.station == b.station)
-        .map(|run| noise.common_covariance(&run[0].base_from_flange, state))
-        .collect();
+    let num_stations = by_points.last().map_or(0, |last| last.station + 1);
+    let mut common_covariance = vec![Mat3::zeros(); num_stations];
+    for run in by_points.chunk_by(|a, b| a.station == b.station) {
+        common_covariance[run[0].station] = noise.common_covariance(&run[0].base_from_flange, state);
+    }
     Ok((observations, common_covariance))
 }
 

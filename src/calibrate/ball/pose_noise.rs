@@ -51,6 +51,20 @@ impl PoseNoise {
             .then_some(Self { is_estimated: [position, orientation, true, has_orientation], ..self })
     }
 
+    /// Where noise is to be estimated, that of a good arm in its place: fixed, for data that are not settled yet and would
+    /// take every misfit for noise.
+    pub fn nominal(self) -> Self {
+        const POSITION_STD_MM: f64 = 0.05;
+        const ORIENTATION_STD_RAD: f64 = 3e-4;
+        let mut variances = self.variances;
+        for (idx, std) in [POSITION_STD_MM, ORIENTATION_STD_RAD].into_iter().enumerate() {
+            if self.is_estimated[idx] {
+                variances[idx] = std * std;
+            }
+        }
+        Self { variances, ..self.fixed() }
+    }
+
     /// The same with the noise of single poses to be estimated after all.
     pub const fn reopened(self) -> Self {
         Self { is_estimated: [true, true, false, false], ..self }
@@ -79,6 +93,11 @@ impl PoseNoise {
     /// Standard deviation of the position of each pose by itself, mm.
     pub fn position_std_mm(&self) -> f64 {
         self.variances[0].sqrt()
+    }
+
+    /// The largest standard deviation of a position, mm.
+    pub fn largest_std_mm(&self) -> f64 {
+        self.variances[0].max(self.variances[2]).sqrt()
     }
 
     /// For the reader.

@@ -1,17 +1,23 @@
 //! The spread of the result over stations drawn with replacement: a σ that rests on no model of the noise.
 
 use crate::calibrate::Solution;
+use crate::calibrate::uncertainty::distance_quantile;
 use crate::geometry::stats::{self, SplitMix};
 use crate::watch::{Cancelled, Watch};
 
 use super::workspace_point;
 
+/// Fewer draws than this show no spread.
+const MIN_DRAWS: usize = 20;
+
 /// The spread of the result over stations drawn with replacement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bootstrap {
-    /// Distance of the workspace point from that of the result, one entry a draw, mm, rising.
+    /// Distance of the workspace point from that of the result, one entry a draw, mm, rising; empty where too few draws could
+    /// be solved, and then the figures are NaN.
     pub distances_mm: Vec<f64>,
-    /// Their root mean square: to be held against `workspace_point_std_mm`, mm.
+    /// Standard deviation by their median, which a few draws of hardly any stations do not move: to be held against
+    /// `workspace_point_std_mm`, mm.
     pub std_mm: f64,
     /// 95 % of the draws are within this, mm.
     pub within_95_mm: f64,
@@ -48,10 +54,20 @@ pub fn bootstrap(
         }
     }
     distances_mm.sort_by(f64::total_cmp);
+    if distances_mm.len() < MIN_DRAWS {
+        distances_mm.clear();
+    }
     Ok(Bootstrap {
-        std_mm: stats::rms(distances_mm.iter().copied()),
+        std_mm: std_by_median(solution, &distances_mm),
         within_95_mm: distances_mm.get(distances_mm.len() * 95 / 100).copied().unwrap_or(f64::NAN),
         num_failed: num_draws - distances_mm.len(),
         distances_mm,
     })
+}
+
+/// The stated σ times how much larger the median distance is than that σ lets one expect.
+fn std_by_median(solution: &Solution, distances_mm: &[f64]) -> f64 {
+    let Some(known) = &solution.uncertainty else { return f64::NAN };
+    let expected_mm = distance_quantile(0.5, &known.workspace_point_covariance, f64::INFINITY);
+    known.workspace_point_std_mm * stats::median(&mut distances_mm.to_vec()) / expected_mm
 }

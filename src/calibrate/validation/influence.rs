@@ -58,7 +58,7 @@ pub(super) fn influence(solution: &Solution) -> Option<Vec<Influence>> {
 /// With the station's information G about the ball (in the base), its pull p and the covariance P of what the others
 /// predict, the difference d = G⁻¹ p has the covariance G⁻¹ + P: the square is pᵀ (I + P G)⁻¹ G⁻¹ p.
 fn squared_residual(reduced: &Reduced, station: usize, state: &State, others: &Hessian) -> Option<f64> {
-    let run = reduced.stations().nth(station)?;
+    let run = reduced.stations().find(|run| run[0].station == station)?;
     let first = run.first()?;
     let (centre, sensor_from_base) = state.ball_in_sensor_and_rotation(&first.base_from_flange);
     let base_from_sensor = sensor_from_base.transpose();

@@ -3,19 +3,26 @@
 
 use std::fmt::Write as _;
 
-use crate::calibrate::MethodResult;
-use crate::calibrate::{Solution, best_available};
+use crate::calibrate::verdict::judge;
+use crate::calibrate::{MethodResult, Solution, Verdict, best_available};
+use crate::diagnose::Finding;
 use crate::plan::Plan;
 use crate::report::digits::fixed;
 use crate::report::result_file::Examination;
 use crate::session::Session;
+use crate::text::cli::NOTHING_WRONG_BUT_POORLY_KNOWN;
 use crate::text::diagnosis as words;
+use crate::text::shell::more_of_a_kind;
+
+/// Findings of a kind that are listed before the rest is only counted.
+const MAX_OF_A_KIND: usize = 3;
 
 /// The section, headed "Diagnosis". Writing to a string does not fail, hence the `ok()`s.
 pub fn section(session: &Session, results: &[MethodResult], examination: &Examination<'_>) -> String {
     let mut out = format!("\n{}\n", words::HEADING);
-    findings(&mut out, session, examination);
     let solution = best_available(results);
+    let is_good = solution.is_none_or(|solution| judge(solution).0 == Verdict::Good);
+    findings(&mut out, session, examination, is_good);
     let lines = solution.into_iter().flat_map(|solution| figures(solution, examination));
     for line in lines.chain(examination.plan.and_then(|plan| next_pose(session, plan))) {
         writeln!(out, "  {line}").ok();
@@ -23,15 +30,25 @@ pub fn section(session: &Session, results: &[MethodResult], examination: &Examin
     out
 }
 
-fn findings(out: &mut String, session: &Session, examination: &Examination<'_>) {
+fn findings(out: &mut String, session: &Session, examination: &Examination<'_>, is_good: bool) {
     let findings = &examination.diagnosis.findings;
     if findings.is_empty() {
-        writeln!(out, "  {}", words::NOTHING_FOUND).ok();
+        let sentence = if is_good { words::NOTHING_FOUND } else { NOTHING_WRONG_BUT_POORLY_KNOWN };
+        writeln!(out, "  {sentence}").ok();
     }
     for finding in findings {
+        let code = finding.fault.code();
+        let of_kind: Vec<&Finding> = findings.iter().filter(|other| other.fault.code() == code).collect();
+        let place = of_kind.iter().position(|other| *other == finding).unwrap_or(0);
+        if place == MAX_OF_A_KIND {
+            writeln!(out, "    {}", more_of_a_kind(of_kind.len() - MAX_OF_A_KIND, code)).ok();
+        }
+        if place >= MAX_OF_A_KIND {
+            continue;
+        }
         let message = words::fault_message(&finding.fault, session);
         let remedy = words::fault_remedy(&finding.fault, session);
-        write!(out, "  ! [{}] {message} {remedy}", finding.fault.code()).ok();
+        write!(out, "  {} [{code}] {message} {remedy}", words::severity_mark(finding.severity)).ok();
         if let Some(residual_mm) = finding.evidence.residual_mm {
             write!(out, " {}", words::residual_falls(residual_mm)).ok();
         }

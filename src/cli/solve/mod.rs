@@ -14,6 +14,7 @@ use crate::diagnose::{Case, Diagnosis, diagnose};
 use crate::plan::{Limits, Plan, next_stations};
 use crate::report::result_file::{Examination, result_file};
 use crate::session::{self, Session, ball_problem, measure};
+use crate::text::cli::no_such_station;
 use crate::text::diagnosis::first_finding;
 use crate::watch::{Cancelled, Watch};
 
@@ -32,6 +33,9 @@ pub struct SolveArgs {
     /// Run only this method; may be given several times
     #[arg(long = "method", value_name = "ID", value_parser = method_parser())]
     pub methods: Vec<Method>,
+    /// Leave this station out, by its label; may be given several times
+    #[arg(long, value_name = "LABEL")]
+    pub without: Vec<String>,
     /// Print the result file (JSON) instead of tables
     #[arg(long)]
     pub json: bool,
@@ -87,10 +91,16 @@ impl Watch for TerminalProgress {
 /// Runs the command.
 #[must_use]
 pub fn run(args: &SolveArgs) -> ExitCode {
-    let session = match session::load(&args.file) {
+    let mut session = match session::load(&args.file) {
         Ok(session) => session,
         Err(error) => return fail(EXIT_WRONG_INPUT, &error),
     };
+    for label in &args.without {
+        match session.stations.iter_mut().find(|station| station.label == *label) {
+            Some(station) => station.enabled = false,
+            None => return fail(EXIT_WRONG_INPUT, &no_such_station(label, &session)),
+        }
+    }
     solved(args, &session).unwrap_or_else(|reason| fail(EXIT_NOTHING_COMPUTED, &reason))
 }
 
@@ -174,12 +184,11 @@ fn printed(text: &str, session: &Session, results: &[MethodResult], diagnosis: O
         return ExitCode::SUCCESS;
     }
     let mut reasons = String::from("nothing could be computed");
-    for result in results {
-        if let Err(error) = &result.outcome {
-            let separator = if reasons.contains(':') { ";" } else { ":" };
-            // Writing to a string does not fail.
-            write!(reasons, "{separator} {} – {error}", result.method.id()).ok();
-        }
+    // The fixed point asks for least, so its reason is the one that all of them have.
+    let of_first = results.first().and_then(|result| Some((result.method, result.outcome.as_ref().err()?)));
+    if let Some((method, error)) = of_first {
+        // Writing to a string does not fail.
+        write!(reasons, ": {} – {error}", method.id()).ok();
     }
     if let Some(finding) = diagnosis.and_then(|diagnosis| diagnosis.findings.first()) {
         write!(reasons, "; {}", first_finding(&finding.fault, session)).ok();

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::app::compare::{distance_from_truth, improvement, maximum_error_mm};
-use crate::calibrate::{BallProblem, Method, MethodResult, Mount, Solution};
+use crate::calibrate::{BallProblem, Method, MethodResult, Mount, Solution, best_available};
 use crate::diagnose::{Diagnosis, verdict_with};
 use crate::report::digits::{decimals_for, fixed, signed};
 use crate::session::Session;
@@ -30,6 +30,11 @@ pub fn tables(
         num_profiles
     )
     .ok();
+    if let Some(solution) = best_available(results) {
+        writeln!(out, "{}", text::answer_head(solution.method)).ok();
+        verdict_and_calibration(&mut out, session, solution, diagnosis);
+        out.push('\n');
+    }
     overview(&mut out, session, results);
     for result in results {
         match &result.outcome {
@@ -109,9 +114,7 @@ fn overview(out: &mut String, session: &Session, results: &[MethodResult]) {
 fn method_section(out: &mut String, session: &Session, solution: &Solution, diagnosis: Option<&Diagnosis>) {
     let method: Method = solution.method;
     writeln!(out, "\n{} ({})", text::method_name(method), method.id()).ok();
-    let (verdict, reason) = verdict_with(solution, diagnosis);
-    writeln!(out, "  {}", text::verdict_line(verdict, reason, &solution.warnings, session)).ok();
-    calibration(out, session, solution);
+    verdict_and_calibration(out, session, solution, diagnosis);
     out.push_str(
         "  station  side      ball in sensor / mm            ball in base / mm          error from first / mm    left out\n",
     );
@@ -141,6 +144,12 @@ fn method_section(out: &mut String, session: &Session, solution: &Solution, diag
         writeln!(out, "  ! [{}] {} {}", warning.code(), text::warning_message(warning), text::warning_remedy(warning))
             .ok();
     }
+}
+
+fn verdict_and_calibration(out: &mut String, session: &Session, solution: &Solution, diagnosis: Option<&Diagnosis>) {
+    let (verdict, reason) = verdict_with(solution, diagnosis);
+    writeln!(out, "  {}", text::verdict_line(verdict, reason, &solution.warnings, session)).ok();
+    calibration(out, session, solution);
 }
 
 fn calibration(out: &mut String, session: &Session, solution: &Solution) {

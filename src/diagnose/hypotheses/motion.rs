@@ -16,11 +16,14 @@ const LEAST_DRIFT_MM: f64 = 0.1;
 const LEAST_FRAME_MM: f64 = 0.3;
 /// Nothing is said of a motion below this many standard deviations.
 const LEAST_STDS: f64 = 4.0;
+/// With fewer stations three more unknowns fit almost anything.
+const MIN_STATIONS_FOR_DRIFT: usize = 8;
 /// A frame of its own needs as many stations as a calibration.
 const MIN_STATIONS_EACH: usize = crate::calibrate::ball::MIN_STATIONS;
 
 pub(super) fn examine(solved: &Solved<'_>) -> Option<Finding> {
-    let drift = solved.tried(Extension::Drift);
+    let can_tell = solved.model.used_stations().count() >= MIN_STATIONS_FOR_DRIFT;
+    let drift = can_tell.then(|| solved.tried(Extension::Drift)).flatten();
     let frame = second_frame(solved);
     let explained = |tried: &Option<Tried>| tried.as_ref().map_or(f64::INFINITY, |tried| tried.fit.rms_mm);
     if explained(&drift) <= explained(&frame) {

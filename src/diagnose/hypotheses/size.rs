@@ -48,9 +48,10 @@ fn wrong_radius(solved: &Solved<'_>, tried: &Tried, scale_explains_too: bool) ->
         tried.fit.extra_std(0)
     };
     let difference_mm = (found_mm - given_mm).abs();
-    let matters =
-        difference_mm > LEAST_MM.max(LEAST_PART * given_mm) && difference_mm > LEAST_STDS * tried.fit.extra_std(0);
-    matters.then(|| {
+    // A radius that is not known well is estimated with the calibration; only far from what is known of it is it wrong.
+    let prior_std_mm = solved.case.problem.radius_std_mm.unwrap_or(0.0);
+    let is_wrong = matters(difference_mm, tried.fit.extra_std(0).hypot(prior_std_mm), given_mm);
+    is_wrong.then(|| {
         finding(
             solved,
             tried,

@@ -220,7 +220,7 @@ pub const COPY_POSE: &str = "Position and angles";
 /// Menu entry.
 pub const COPY_QUATERNION: &str = "Position and quaternion";
 /// Heading of the warnings.
-pub const FINDINGS: &str = "Findings";
+pub const FINDINGS: &str = "Warnings of this method";
 /// No warnings.
 pub const NO_FINDINGS: &str = "Nothing to remark.";
 

@@ -89,7 +89,10 @@ pub fn fault_message(fault: &Fault, session: &Session) -> String {
         Fault::WrongSides { station_idxs } => {
             format!("{}: the given side of the ball is the wrong one.", capitalised(&stations(session, station_idxs)))
         }
-        Fault::MirroredAxis { axis } => format!(
+        Fault::MirroredAxis { axis: Axis::Z } => {
+            "The arcs bulge away from the sensor's origin: z runs towards the sensor, as a height does, or has the wrong sign.".to_owned()
+        }
+        Fault::MirroredAxis { axis: axis @ Axis::X } => format!(
             "The sensor's {0} axis runs the other way: the data fit when {0} changes its sign in all profiles.",
             axis_name(*axis)
         ),
@@ -199,15 +202,16 @@ pub fn fault_message(fault: &Fault, session: &Session) -> String {
 
 fn unsolved_message(error: &SolveError, mount: Mount) -> String {
     match error {
-        SolveError::TooFewStations { found, needed, .. }
-        | SolveError::TooFewProfileStations { found, needed, .. }
-        | SolveError::TooFewSweeps { found, needed, .. } => {
+        SolveError::TooFewStations { found, needed, refusal }
+        | SolveError::TooFewProfileStations { found, needed, refusal }
+        | SolveError::TooFewSweeps { found, needed, refusal, .. } => {
             let what = match error {
                 SolveError::TooFewSweeps { .. } => "with a sweep",
                 SolveError::TooFewProfileStations { .. } => "with a usable profile",
                 _ => "that can be used",
             };
-            format!("There {} {found} station{} {what}; {needed} are needed.", are(*found), plural(*found))
+            let because = refusal.as_ref().map_or_else(String::new, |refusal| format!(" A profile: {refusal}."));
+            format!("There {} {found} station{} {what}; {needed} are needed.{because}", are(*found), plural(*found))
         }
         SolveError::NoRotation { span_deg } => {
             format!("The orientations differ by {span_deg:.2}° at most, so the place of the sensor cannot be found.")
@@ -236,7 +240,12 @@ pub fn fault_remedy(fault: &Fault, session: &Session) -> String {
             return format!("Read the poses as {}, and correct it where the file is made.", pose_reading(reading));
         }
         Fault::WrongSides { .. } => "Turn these sides round, or set them to auto.",
-        Fault::MirroredAxis { .. } => "Turn this axis round in all profiles, and check the sensor's settings.",
+        Fault::MirroredAxis { axis: Axis::Z } => {
+            "The result is right for profiles as they are. Turn the axis round if other programs take z as a distance."
+        }
+        Fault::MirroredAxis { axis: Axis::X } => {
+            "If the given sides are right, turn this axis round in all profiles; if the axis is right, turn all sides round."
+        }
         Fault::NoRotation { .. } => "Measure again: between stations tilt the tool by 20° about two axes, and turn it.",
         Fault::LittleRotation { .. } => "Add stations that are tilted by 20° or more about two axes, and turned.",
         Fault::OneAxis { .. } => "Add stations that are tilted by 20° or more about an axis across this one.",
@@ -263,7 +272,9 @@ pub fn fault_remedy(fault: &Fault, session: &Session) -> String {
         Fault::StalePose { .. } => "Leave this station out, or enter its own pose.",
         Fault::MixedOrder { .. } => "Give each profile the pose that fits it, and check the order of the recording.",
         Fault::TooFewCleanStations { .. } => "Check the poses one by one, and measure more stations.",
-        Fault::NoiseAboveStated { .. } => "Check the stated noise. Look for play: sensor bracket, ball, robot joints.",
+        Fault::NoiseAboveStated { .. } => {
+            "Check the stated noise. Look for play (bracket, ball, joints) and biased flanks. With few stations one pose may be wrong: measure two more."
+        }
         Fault::HalvesDisagree { .. } => {
             "Add stations with other orientations, and find out what changed during the recording."
         }

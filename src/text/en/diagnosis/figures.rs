@@ -75,7 +75,7 @@ pub fn bootstrap_line(bootstrap: &Bootstrap) -> String {
         num_failed => format!("; {num_failed} gave no result"),
     };
     if num_solved == 0 {
-        return format!("bootstrap: none of {} draws gave a result", bootstrap.num_failed);
+        return format!("bootstrap: too few of {} draws gave a result", bootstrap.num_failed);
     }
     format!(
         "bootstrap, {} draws: ± {} mm at the workspace point, 95 % within {} mm{failed}",
