@@ -87,10 +87,17 @@ fn the_result_file_says_how_far_to_rely_on_it() {
 fn the_diagnosis_follows_the_tables() {
     let text = stdout(&handeye(&["solve", "sample_sessions/one-bad-pose.json"]));
     let (_, section) = text.split_once("\nDiagnosis\n").expect("a section");
-    for fragment in
-        ["! [wrong-pose] The pose of station 7", "next step: Leave out station 7", "next pose: x ", "per 0.01 mm"]
-    {
+    for fragment in ["✖ [wrong-pose] The pose of station 7", "next step: Leave out station 7", "per 0.01 mm"] {
         assert!(section.contains(fragment), "{fragment:?} is not in\n{section}");
+    }
+    assert!(!section.contains("next pose"), "nothing is planned from a wrong result");
+    let (head, _) = text.split_once("errors in mm").expect("tables");
+    assert!(head.contains("Answer: Bundle of all points (ball-bundle)\n  Not usable: The pose of station 7"), "{head}");
+    check_refusal(&["plan", "sample_sessions/one-bad-pose.json"], 3, &["[wrong-pose]", "station 7"]);
+    check_refusal(&["solve", "sample_sessions/one-bad-pose.json", "--without", "x"], 2, &["found x", "1, 2, 3"]);
+    let text = stdout(&handeye(&["solve", "sample_sessions/one-bad-pose.json", "--without", "7"]));
+    for fragment in ["  Good: ", "9 of 10 stations", "Nothing to object to.", "next pose: x "] {
+        assert!(text.contains(fragment), "{fragment:?} is not in\n{text}");
     }
     let text = stdout(&handeye(&["solve", "sample_sessions/one-bad-pose.json", "--no-diagnosis"]));
     assert!(!text.contains("Diagnosis"), "{text}");

@@ -13,10 +13,11 @@ struct SimulateLine {
     args: SimulateArgs,
 }
 
-/// The `handeye simulate` commands in the documentation.
+/// The `handeye simulate` commands in the documentation that make samples.
 fn documented_commands() -> Vec<SimulateArgs> {
     include_str!("../docs/samples.md")
         .lines()
+        .filter(|line| line.contains("--out sample_sessions/"))
         .filter_map(|line| line.strip_prefix("handeye "))
         .map(|line| SimulateLine::try_parse_from(shell_words(line)).expect("a documented command parses").args)
         .collect()
