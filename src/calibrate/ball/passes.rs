@@ -20,6 +20,8 @@ const CONVERGED_PART: f64 = 0.01;
 /// The first pass sees the offsets of the start, so the noise is estimated from the second on, and kept from this one so
 /// that the passes can settle.
 const LAST_NOISE_ESTIMATE: usize = 4;
+/// A scatter so many times that of a stated or usual noise is none: a TOOL was switched, or poses are misread.
+const MAX_NOISE_RATIO: f64 = 30.0;
 /// Steps of the search for the radius; its cost is a parabola nearly.
 const RADIUS_ITERATIONS: usize = 6;
 /// Differences by the radius are taken over this part of it: far above rounding, far below any curvature.
@@ -116,6 +118,9 @@ fn settle_or_scale(
     noise: PoseNoise,
     ratio: f64,
 ) -> Settled {
+    if ratio > MAX_NOISE_RATIO {
+        return scaled(before, ratio);
+    }
     match settle_at(linearised, radius_mm, before.minimum.state, noise) {
         Ok(found) if found.minimum.converged => found,
         _ => scaled(before, ratio.max(1.0)),
