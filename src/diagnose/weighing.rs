@@ -1,7 +1,7 @@
 //! Which of the suspicions is the cause, and which are merely its symptoms: the cause is what explains most, and a symptom
 //! is gone once the cause is mended.
 
-use crate::calibrate::validation::Validation;
+use crate::calibrate::validation::{Normality, Validation};
 use crate::calibrate::{BallProblem, Method, MethodResult, Warning, best_available, solve, solve_all};
 use crate::session::{Session, ball_problem, measure};
 use crate::watch::Unwatched;
@@ -22,9 +22,11 @@ const HALVES_MM: f64 = 0.1;
 const FAR_OFF_PART: f64 = 0.1;
 /// Nor is one by more than this, mm; below it a poor robot and a small ball may do it.
 const FAR_OFF_MM: f64 = 1.0;
-/// Residuals as odd as this by chance once in a hundred million sessions: with many sections the test sees every trace of a
-/// biased flank, which does no harm.
+/// Residuals as odd as this by chance once in a hundred million sessions ...
 const NOT_NORMAL_P: f64 = 1e-8;
+/// ... and with more than this part beyond three σ, five times what is normal: with many sections the test sees every trace
+/// of a biased flank, which does no harm.
+const WILD_PART: f64 = 0.015;
 
 /// The findings with their weight, the most serious first, without those that the first one accounts for.
 pub(super) fn causes(case: Case<'_>, mut findings: Vec<Finding>) -> Causes {
@@ -125,9 +127,17 @@ fn from_validation(validation: &Validation) -> impl Iterator<Item = (Fault, Seve
     let normality = validation
         .normality
         .as_ref()
-        .filter(|normality| normality.p_value < NOT_NORMAL_P)
+        .filter(|normality| normality.p_value < NOT_NORMAL_P && wild_part(normality) > WILD_PART)
         .map(|normality| (Fault::ResidualsNotNormal { p_value: normality.p_value }, Severity::Note));
     halves.into_iter().chain(normality)
+}
+
+/// The part of the residuals beyond three σ.
+fn wild_part(normality: &Normality) -> f64 {
+    let num_wild = normality.quantiles.iter().filter(|[_, residual]| residual.abs() > 3.0).count();
+    #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 residuals")]
+    let part = num_wild as f64 / normality.quantiles.len().max(1) as f64;
+    part
 }
 
 const fn is_about_stations(fault: &Fault) -> bool {
