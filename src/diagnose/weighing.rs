@@ -24,9 +24,9 @@ const FAR_OFF_PART: f64 = 0.1;
 const FAR_OFF_MM: f64 = 1.0;
 /// Residuals as odd as this by chance once in a hundred million sessions ...
 const NOT_NORMAL_P: f64 = 1e-8;
-/// ... and with more than this part beyond three σ, five times what is normal: with many sections the test sees every trace
+/// ... and with more than this part beyond three σ, twenty times what is normal: with many sections the test sees every trace
 /// of a biased flank, which does no harm.
-const WILD_PART: f64 = 0.015;
+const WILD_PART: f64 = 0.05;
 
 /// The findings with their weight, the most serious first, without those that the first one accounts for.
 pub(super) fn causes(case: Case<'_>, mut findings: Vec<Finding>) -> Causes {
