@@ -53,7 +53,7 @@ pub(super) struct Found<'a> {
     pub radius: Option<EstimatedRadius>,
     /// Change of the unknowns with the radius, a mm.
     pub by_radius: Gradient,
-    /// See [`station_ball`].
+    /// See [`station_ball`](crate::calibrate::validation::station_ball).
     pub prior_information: f64,
     pub poses: PoseGeometry,
     pub warnings: Vec<Warning>,
