@@ -6,7 +6,7 @@
 
 use crate::calibrate::observation::{CentreObservation, State};
 use crate::calibrate::rotation_start::PoseGeometry;
-use crate::calibrate::solver::{Gradient, Minimum, Normal, covariance_for_unit_noise, minimise};
+use crate::calibrate::solver::{Normal, minimise};
 use crate::calibrate::uncertainty::Spread;
 use crate::calibrate::{BallProblem, Method, Reading, Side, SideChoice, Solution, SolveError, Station, Warning};
 use crate::fit::ArcFit;
@@ -14,6 +14,7 @@ use crate::geometry::{Rigid, Vec3, stats};
 
 use super::MIN_STATIONS;
 use super::assemble::{Found, StationFacts, first_pose};
+use super::passes::change_by_radius;
 use super::refused::{first_refusal, refused_captures};
 use super::side::{SideCandidate, resolve_sides};
 
@@ -21,8 +22,6 @@ use super::side::{SideCandidate, resolve_sides};
 const SIDE_RATIO: f64 = 2.0;
 /// y counts as blind when its σ is this many times that of x and z.
 const BLIND_RATIO: f64 = 10.0;
-/// Differences by the radius are taken over this part of it.
-const RADIUS_STEP_PART: f64 = 1e-4;
 /// A section above the ball's radius by more than this many σ is not noise.
 const LARGER_AT_STDS: f64 = 3.0;
 
@@ -84,7 +83,13 @@ pub(super) fn find(problem: &BallProblem) -> Result<Found<'_>, SolveError> {
     let start = poses.reduced(&centres).state(resolved.minimum.flange_from_sensor);
     let observations = CentreObservation::points(&base_from_flange, &centres);
     let minimum = minimise(&observations.iter(), start)?;
-    let by_radius = change_by_radius(problem, &sections, &resolved.sides, &base_from_flange, &minimum)?;
+    // With a larger ball every section is further from its centre.
+    let by_radius = change_by_radius(problem.radius_mm, &minimum.hessian, |radius_mm| {
+        let at_radius = sections.iter().map(|section| section.at_radius(radius_mm));
+        let centres: Vec<Vec3> =
+            at_radius.zip(&resolved.sides).map(|(candidate, side)| candidate.centre(*side)).collect();
+        Ok(Normal::of(CentreObservation::points(&base_from_flange, &centres).iter(), &minimum.state).gradient)
+    })?;
     add_side_warning(&sections, &resolved.cost_ratios, &mut warnings);
     add_blind_warning(&sections, &mut warnings);
     let spread = scaled_spread(&observations, &minimum.state);
@@ -113,24 +118,6 @@ pub(super) fn find(problem: &BallProblem) -> Result<Found<'_>, SolveError> {
         poses,
         warnings,
     })
-}
-
-/// How the minimum follows the radius: with a larger ball every section is further from its centre.
-fn change_by_radius(
-    problem: &BallProblem,
-    sections: &[Section<'_>],
-    sides: &[Side],
-    base_from_flange: &[Rigid],
-    minimum: &Minimum,
-) -> Result<Gradient, SolveError> {
-    let step_mm = RADIUS_STEP_PART * problem.radius_mm;
-    let gradient_at = |radius_mm: f64| {
-        let centres: Vec<Vec3> =
-            sections.iter().zip(sides).map(|(section, side)| section.at_radius(radius_mm).centre(*side)).collect();
-        Normal::of(CentreObservation::points(base_from_flange, &centres).iter(), &minimum.state).gradient
-    };
-    let slope = (gradient_at(problem.radius_mm + step_mm) - gradient_at(problem.radius_mm - step_mm)) / (2.0 * step_mm);
-    Ok(covariance_for_unit_noise(&minimum.hessian)? * slope)
 }
 
 /// The first capture of a station as candidates for the ball's centre; reduced points are taken as they are.

@@ -2,7 +2,7 @@
 
 use crate::calibrate::observation::{CentreObservation, NUM_UNKNOWNS, State};
 use crate::calibrate::reduced::sums_at;
-use crate::calibrate::solver::{Gradient, Minimum, covariance_for_unit_noise, minimise_sums};
+use crate::calibrate::solver::{Gradient, Hessian, Minimum, covariance_for_unit_noise, minimise_sums};
 use crate::calibrate::{AboveStated, BallProblem, EstimatedRadius, SolveError};
 use crate::geometry::{Mat3, Vec3, stats};
 
@@ -75,7 +75,12 @@ pub(super) fn settle(linearised: impl Linearise, problem: &BallProblem, start: S
         settled = settle_with_noise(&linearised, radius_mm, settled.minimum.state, noise, num_stations)?;
         settled.radius = Some(found);
     }
-    settled.by_radius = change_by_radius(&linearised, radius_mm, &settled)?;
+    settled.by_radius = change_by_radius(radius_mm, &settled.minimum.hessian, |radius_mm| {
+        let state = &settled.minimum.state;
+        let by_points = merged(linearised(state, radius_mm));
+        let (observations, common) = weighted(&by_points, state, &settled.pose_noise)?;
+        Ok(sums_at(&observations, &common, state).gradient)
+    })?;
     Ok(settled)
 }
 
@@ -251,17 +256,19 @@ fn estimated_radius(
     Ok(EstimatedRadius { radius_mm, std_mm })
 }
 
-/// How the minimum follows the radius: what the data pull with if the ball is a little larger, against the information.
-fn change_by_radius(linearised: &impl Linearise, radius_mm: f64, settled: &Settled) -> Result<Gradient, SolveError> {
+/// How a minimum with the normal equations `hessian` follows the radius: what the data pull with if the ball is a little
+/// larger, against the information.
+///
+/// # Errors
+/// [`SolveError::Undetermined`] if a combination of the unknowns is free, and those of `gradient_at`.
+pub(super) fn change_by_radius(
+    radius_mm: f64,
+    hessian: &Hessian,
+    gradient_at: impl Fn(f64) -> Result<Gradient, SolveError>,
+) -> Result<Gradient, SolveError> {
     let step_mm = RADIUS_STEP_PART * radius_mm;
-    let state = &settled.minimum.state;
-    let gradient_at = |radius_mm: f64| {
-        let by_points = merged(linearised(state, radius_mm));
-        let (observations, common) = weighted(&by_points, state, &settled.pose_noise)?;
-        Ok(sums_at(&observations, &common, state).gradient)
-    };
     let slope = (gradient_at(radius_mm + step_mm)? - gradient_at(radius_mm - step_mm)?) / (2.0 * step_mm);
-    Ok(covariance_for_unit_noise(&settled.minimum.hessian)? * slope)
+    Ok(covariance_for_unit_noise(hessian)? * slope)
 }
 
 /// The scatter against what is stated, of single captures or of whole stations: the less likely one.

@@ -7,9 +7,9 @@ use crate::calibrate::observation::{NUM_UNKNOWNS, State};
 use crate::calibrate::reduced::Reduced;
 use crate::calibrate::solver::{Hessian, covariance_for_unit_noise};
 use crate::geometry::so3::hat;
-use crate::geometry::{Mat3, Vec3, stats};
+use crate::geometry::{Mat3, stats};
 
-use super::leave_one_out::minima_without_each;
+use super::leave_one_out::{information_and_pull_in_base, minima_without_each};
 use super::workspace_point;
 
 /// What one station means for the result.
@@ -62,12 +62,7 @@ fn squared_residual(reduced: &Reduced, station: usize, state: &State, others: &H
     let first = run.first()?;
     let (centre, sensor_from_base) = state.ball_in_sensor_and_rotation(&first.base_from_flange);
     let base_from_sensor = sensor_from_base.transpose();
-    let (mut information, mut pull) = (Mat3::zeros(), Vec3::zeros());
-    for observation in run {
-        let rotation = (observation.base_from_flange.rotation * state.flange_from_sensor.rotation).to_rotation_matrix();
-        information += rotation.matrix() * observation.information * rotation.matrix().transpose();
-        pull += rotation * observation.pull_at(state);
-    }
+    let (mut information, mut pull) = information_and_pull_in_base(run.iter(), state, Mat3::zeros());
     if let Some(common) = reduced.common_covariance.get(station) {
         let in_base = base_from_sensor * common * sensor_from_base;
         let damp = (Mat3::identity() + information * in_base).try_inverse()?;

@@ -17,15 +17,26 @@ pub fn station_ball<'a>(
     state: &State,
     prior_information: f64,
 ) -> Vec3 {
-    let mut information = Mat3::identity() * prior_information;
-    let mut pull = Vec3::zeros();
+    let prior = Mat3::identity() * prior_information;
+    let (information, pull) = information_and_pull_in_base(observations, state, prior);
+    let shift = information.cholesky().map_or_else(Vec3::zeros, |factor| factor.solve(&pull));
+    state.ball_in_base + shift
+}
+
+/// What observations say about the ball in the base on top of `prior`: their information (1/mm²), and what they pull with
+/// (1/mm).
+pub(super) fn information_and_pull_in_base<'a>(
+    observations: impl Iterator<Item = &'a CentreObservation>,
+    state: &State,
+    prior: Mat3,
+) -> (Mat3, Vec3) {
+    let (mut information, mut pull) = (prior, Vec3::zeros());
     for observation in observations {
         let rotation = (observation.base_from_flange.rotation * state.flange_from_sensor.rotation).to_rotation_matrix();
         information += rotation.matrix() * observation.information * rotation.matrix().transpose();
         pull += rotation * observation.pull_at(state);
     }
-    let shift = information.cholesky().map_or_else(Vec3::zeros, |factor| factor.solve(&pull));
-    state.ball_in_base + shift
+    (information, pull)
 }
 
 /// For each station: how far its ball lies from the ball of the solution made without it, mm. `None` where that
