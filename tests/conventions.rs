@@ -67,7 +67,7 @@ fn declared_as(session: &Session, really: &str, declared: &str, factor: f64, is_
         capture.base_from_flange = Transform::from_parts(pose.translation_mm(), rotation);
         capture.written_angles = is_written.then_some(WrittenAngles { angles_deg, convention: declared });
     });
-    session.robot.pose_convention = declared;
+    session.robot.notation.convention = declared;
     session
 }
 
@@ -109,7 +109,7 @@ fn written_angles_are_found_whatever_convention_they_were_declared_in() {
         for (offset, declared) in DISTINCT.into_iter().enumerate().filter(|(_, declared)| *declared != really) {
             let truth = session(case + offset);
             let mended = check_found(&truth, &declared_as(&truth, really, declared, 1.0, true), "pose-convention");
-            assert_eq!(mended.robot.pose_convention.order, convention(really).order);
+            assert_eq!(mended.robot.notation.convention.order, convention(really).order);
             assert!(mended.stations[0].captures[0].written_angles.is_some(), "the numbers stay");
         }
     }
@@ -123,10 +123,10 @@ fn angles_are_found_from_quaternions_that_were_made_of_them_in_the_wrong_order()
         let mut wrong = declared_as(&truth, really, declared, 1.0, false);
         if case == 1 {
             // The robot's own convention need not have to do with it.
-            wrong.robot.pose_convention = convention("comau-aer");
+            wrong.robot.notation.convention = convention("comau-aer");
         }
         let mended = check_found(&truth, &wrong, "pose-convention");
-        assert_eq!(mended.robot.pose_convention.order, convention(really).order);
+        assert_eq!(mended.robot.notation.convention.order, convention(really).order);
         assert!(mended.stations[0].captures[0].written_angles.is_none(), "nobody wrote these numbers");
     }
 }
@@ -194,7 +194,7 @@ fn several_parts_at_once_are_found() {
         capture.base_from_flange = Transform::from_parts(pose.translation_mm() / 1000.0, pose.rotation());
     });
     let mended = check_found(&truth, &wrong, "pose-convention");
-    assert_eq!(mended.robot.pose_convention.id, "ur-rotvec");
+    assert_eq!(mended.robot.notation.convention.id, "ur-rotvec");
 }
 
 #[test]

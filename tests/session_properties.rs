@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use handeye::calibrate::{Mount, Side, SideChoice};
-use handeye::geometry::{Base, Flange, PoseConvention, Profile, Transform, Vec3, so3};
+use handeye::geometry::{Base, Flange, PoseConvention, PoseNotation, Profile, Transform, Vec3, so3};
 use handeye::session::{
     Capture, Published, Reading, Robot, Sensor, Session, Station, Target, Truth, WrittenAngles, parse, to_json,
 };
@@ -83,7 +83,7 @@ prop_compose! {
         Session {
             name,
             notes,
-            robot: Robot { position_std_mm, pose_convention: &PoseConvention::ALL[convention_idx], ..Robot::default() },
+            robot: Robot { position_std_mm, notation: PoseNotation::of(&PoseConvention::ALL[convention_idx]), ..Robot::default() },
             sensor: Sensor::default(),
             target: Target::Ball { radius_mm, radius_std_mm: position_std_mm },
             mount: if is_fixed { Mount::Fixed } else { Mount::OnFlange },

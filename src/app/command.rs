@@ -5,6 +5,22 @@ use std::path::PathBuf;
 use crate::calibrate::SideChoice;
 use crate::diagnose::Remedy;
 use crate::plan::Limits;
+use crate::session::import::ImportOptions;
+use crate::session::{Edit, Target};
+
+/// Where imported stations go.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ImportInto {
+    /// A session of their own.
+    NewSession {
+        /// Its name.
+        name: String,
+        /// What was measured.
+        target: Target,
+    },
+    /// The session on the bench, behind its stations.
+    OpenSession,
+}
 
 /// A request from a panel, a shortcut or a test; [`super::Workbench::apply`] carries them out in order.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +35,37 @@ pub enum Command {
     Save,
     /// Writes the session to another file.
     SaveAs(PathBuf),
+    /// Writes the session to its file although another program has changed that file meanwhile.
+    SaveAnyway,
+    /// Reads the session's file again; what was edited meanwhile can be brought back by undo.
+    Reload,
+    /// Opens what a run that ended badly left behind, by its index in [`super::Workbench::recoverable`].
+    Recover(usize),
+    /// Throws that away.
+    DiscardRecoverable(usize),
+    /// Changes the session. Edits that carry the same gesture, such as the strokes of one typing, are one step of undo.
+    Edit {
+        /// The change.
+        edit: Edit,
+        /// What it belongs to, if it is a part of something longer.
+        gesture: Option<u64>,
+    },
+    /// Goes back (negative) or forth by so many steps of the history.
+    StepHistory(isize),
+    /// Reads files and folders of poses and profiles for a preview.
+    Import(Vec<PathBuf>),
+    /// Reads pasted text for a preview.
+    ImportText(String),
+    /// Reads what is in the preview in another way.
+    SetImportOptions(Box<ImportOptions>),
+    /// Ends the preview: its stations become a new session, or are added to the open one.
+    FinishImport(ImportInto),
+    /// Ends the preview.
+    CancelImport,
+    /// Writes the poses as CSV.
+    ExportPoses(PathBuf),
+    /// Writes the profiles as CSV, one a file, into a folder.
+    ExportProfiles(PathBuf),
     /// Lets a station take part or not.
     SetStationEnabled {
         /// Index of the station.

@@ -3,10 +3,12 @@
 
 pub mod command;
 pub mod compare;
+pub mod document;
 pub mod jobs;
 pub mod study;
 pub mod workbench;
 
-pub use command::Command;
+pub use command::{Command, ImportInto};
+pub use document::Document;
 pub use study::{Found, Study};
-pub use workbench::{Document, Notice, NoticeKind, Progress, Results, Workbench};
+pub use workbench::{ImportDraft, Notice, NoticeKind, Progress, Results, Workbench};

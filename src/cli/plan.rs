@@ -125,7 +125,7 @@ fn standoff_about_reference(problem: &BallProblem) -> Option<[f64; 2]> {
 
 fn rough_cell(args: &PlanArgs, session: &Session, problem: &BallProblem) -> Option<RoughCell> {
     let &[x, y, z, a, b, c] = args.sensor_at.as_deref()? else { return None };
-    let rotation = session.robot.pose_convention.rotation_from_angles_deg([a, b, c]);
+    let rotation = session.robot.notation.convention.rotation_from_angles_deg([a, b, c]);
     Some(RoughCell {
         mount: session.mount,
         flange_from_sensor: Rigid::from_parts(Vec3::new(x, y, z).into(), rotation),
@@ -138,7 +138,7 @@ fn rough_cell(args: &PlanArgs, session: &Session, problem: &BallProblem) -> Opti
 
 /// The plan for people: poses in the robot's own angles.
 fn table(session: &Session, plan: &Plan, method: Option<Method>) -> String {
-    let convention: &PoseConvention = session.robot.pose_convention;
+    let convention: &PoseConvention = session.robot.notation.convention;
     let std = |std_mm: Option<f64>| std_mm.map_or_else(|| "–".to_owned(), |std_mm| fixed(std_mm, 3));
     let mut out = words::plan_head(&session.name, plan.stations.len(), method, plan.workspace_point_std_mm);
     let [first, second, third] = convention.angle_names;

@@ -20,6 +20,10 @@ pub struct Flange;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sensor;
 
+/// The active tool point of the controller, where that is another frame than the flange.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tcp;
+
 impl Frame for Base {
     const NAME: &'static str = "base";
 }
@@ -30,4 +34,8 @@ impl Frame for Flange {
 
 impl Frame for Sensor {
     const NAME: &'static str = "sensor";
+}
+
+impl Frame for Tcp {
+    const NAME: &'static str = "tool point";
 }

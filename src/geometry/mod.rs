@@ -13,6 +13,7 @@
 
 pub mod convention;
 pub mod frame;
+pub mod notation;
 pub mod profile;
 pub mod se3;
 pub mod so3;
@@ -20,7 +21,8 @@ pub mod stats;
 pub mod transform;
 
 pub use convention::{AngleOrder, PoseConvention};
-pub use frame::{Base, Flange, Frame, Sensor};
+pub use frame::{Base, Flange, Frame, Sensor, Tcp};
+pub use notation::PoseNotation;
 pub use profile::Profile;
 pub use transform::Transform;
 

@@ -41,7 +41,7 @@ pub(super) fn planned_stations(session: &Session, plan: &Plan) -> Vec<Value> {
 }
 
 fn planned_station(session: &Session, station: &PlannedStation) -> Value {
-    let convention = session.robot.pose_convention;
+    let convention = session.robot.notation.convention;
     let pose = &station.base_from_flange;
     json!({
         "base_from_flange": {

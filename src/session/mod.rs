@@ -1,13 +1,18 @@
 //! The document: what a session holds, its file format, and the way from its profiles to a problem to solve.
 
 pub mod check;
+pub mod edit;
 pub mod error;
 pub mod format;
 pub mod history;
+pub mod import;
+mod limits;
 pub mod measure;
 pub mod model;
 pub mod samples;
+pub mod table;
 
+pub use edit::{Edit, EditRefusal, Place, Row, SetupField};
 pub use error::SessionError;
 pub use format::{load, parse, save, to_json};
 pub use history::History;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde_json::{Map, Value};
 
 use crate::calibrate::{Mount, SideChoice};
-use crate::geometry::{Base, Flange, PoseConvention, Profile, Sensor as SensorFrame, Transform, Vec3};
+use crate::geometry::{Base, Flange, PoseConvention, PoseNotation, Profile, Sensor as SensorFrame, Transform, Vec3};
 
 /// Fields of a JSON object that we do not know; they survive load and save.
 ///
@@ -18,8 +18,8 @@ pub type UnknownFields = Map<String, Value>;
 pub struct Robot {
     /// Make and type.
     pub model: String,
-    /// How its controller writes orientations.
-    pub pose_convention: &'static PoseConvention,
+    /// How its controller writes poses: the numbers in which they are shown and edited.
+    pub notation: PoseNotation,
     /// Standard deviation of a reported coordinate, mm, if known.
     pub position_std_mm: Option<f64>,
     /// Standard deviation of a reported orientation, degrees, if known.
@@ -32,7 +32,7 @@ impl Default for Robot {
     fn default() -> Self {
         Self {
             model: String::new(),
-            pose_convention: PoseConvention::default_convention(),
+            notation: PoseNotation::default(),
             position_std_mm: None,
             orientation_std_deg: None,
             unknown: UnknownFields::new(),

@@ -325,18 +325,18 @@ fn give_sides(session: &mut Session) {
 
 fn read_fanuc_as_kuka(session: &mut Session) {
     let [Some(fanuc), Some(kuka)] = ["fanuc-wpr", "kuka-abc"].map(PoseConvention::by_id) else { return };
-    session.robot.pose_convention = kuka;
+    session.robot.notation.convention = kuka;
     write_angles(session, |rotation| fanuc.angles_deg_from_rotation(rotation));
 }
 
 fn read_radians_as_degrees(session: &mut Session) {
-    let convention = session.robot.pose_convention;
+    let convention = session.robot.notation.convention;
     write_angles(session, |rotation| convention.angles_deg_from_rotation(rotation).map(f64::to_radians));
 }
 
 /// Writes the orientations as three numbers, and reads them as degrees in the session's convention.
 fn write_angles(session: &mut Session, written: impl Fn(&UnitQuaternion<f64>) -> [f64; 3]) {
-    let convention = session.robot.pose_convention;
+    let convention = session.robot.notation.convention;
     for capture in captures(session) {
         let angles_deg = written(&capture.base_from_flange.rotation());
         capture.base_from_flange = Transform::from_parts(

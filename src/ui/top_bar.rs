@@ -103,7 +103,7 @@ fn right_side(ui: &mut Ui, workbench: &Workbench, actions: &mut Vec<Action>) -> 
         }
     }
     if let Some(document) = workbench.document() {
-        let convention = document.session.robot.pose_convention;
+        let convention = document.session.robot.notation.convention;
         ui.add_space(8.0);
         widgets::chip(ui, words::UNITS, words::UNITS_HINT);
         ui.add_space(8.0);

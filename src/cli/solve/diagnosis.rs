@@ -88,7 +88,7 @@ fn figures(solution: &Solution, examination: &Examination<'_>) -> Vec<String> {
 
 fn next_pose(session: &Session, plan: &Plan) -> Option<String> {
     let station = plan.stations.first()?;
-    let convention = session.robot.pose_convention;
+    let convention = session.robot.notation.convention;
     let named = |names: [&str; 3], values: [f64; 3], unit: &str| {
         let parts: Vec<String> =
             names.iter().zip(values).map(|(name, value)| format!("{name} {}", fixed(value, 2))).collect();

@@ -157,7 +157,7 @@ fn calibration(out: &mut String, session: &Session, solution: &Solution) {
         Mount::OnFlange => "flange_from_sensor",
         Mount::Fixed => "base_from_sensor",
     };
-    let convention = session.robot.pose_convention;
+    let convention = session.robot.notation.convention;
     let translation = solution.flange_from_sensor.translation_mm();
     let rotation = solution.flange_from_sensor.rotation();
     let angles = convention.angles_deg_from_rotation(&rotation);

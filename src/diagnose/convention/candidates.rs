@@ -91,7 +91,7 @@ fn written_order(session: &Session, sections: &[Section]) -> Option<AngleOrder> 
 /// The orders by which a program may have made the rotations: the robot's own, then those of the other makers. A list of
 /// numbers and the same list backwards are read alike, so one of them is enough.
 fn orders_read(session: &Session) -> Vec<AngleOrder> {
-    let mut orders = vec![session.robot.pose_convention.order];
+    let mut orders = vec![session.robot.notation.convention.order];
     for convention in PoseConvention::ALL {
         let order = convention.order;
         if !orders.contains(&order) && !orders.contains(&order.backwards()) {

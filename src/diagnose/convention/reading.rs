@@ -173,7 +173,7 @@ impl PoseReading {
     /// Reads the poses of a session in this way. Written angles stay where they still say what the rotation is and a maker
     /// writes them so, and so does the robot's convention.
     pub fn apply(&self, session: &mut Session) {
-        let maker = self.makers().into_iter().find(|maker| maker.id == session.robot.pose_convention.id);
+        let maker = self.makers().into_iter().find(|maker| maker.id == session.robot.notation.convention.id);
         let maker = maker.or_else(|| self.makers().first().copied());
         for (station_idx, station) in session.stations.iter_mut().enumerate() {
             let poses: Vec<Rigid> =
@@ -184,7 +184,7 @@ impl PoseReading {
             }
         }
         if let Some(maker) = maker {
-            session.robot.pose_convention = maker;
+            session.robot.notation.convention = maker;
         }
     }
 

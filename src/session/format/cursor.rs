@@ -1,9 +1,9 @@
 //! A walk through a JSON tree that knows where it is, so that every refusal names its path.
 
 use std::borrow::Cow;
-use std::fmt;
 
 use crate::geometry::Vec3;
+use crate::session::limits::Quantity;
 use crate::session::model::UnknownFields;
 
 use super::tree::{Node, node_of, quoted};
@@ -14,26 +14,6 @@ pub(super) struct Refusal {
     pub path: String,
     pub found: String,
     pub expected: String,
-}
-
-/// A number's meaning and the values it may have, ends included.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Quantity {
-    pub what: &'static str,
-    pub min: f64,
-    pub max: f64,
-}
-
-impl Quantity {
-    fn admits(&self, value: f64) -> bool {
-        (self.min..=self.max).contains(&value)
-    }
-}
-
-impl fmt::Display for Quantity {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "{} from {} to {}", self.what, self.min, self.max)
-    }
 }
 
 /// A value with its place in the file.

@@ -4,7 +4,6 @@
 //! [`Session`], with every field checked once. Whatever is refused names file, place, found and expected.
 
 mod cursor;
-mod limits;
 mod names;
 mod save;
 mod tree;

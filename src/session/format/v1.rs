@@ -8,14 +8,14 @@ use nalgebra::{Quaternion, UnitQuaternion};
 
 use crate::calibrate::{Mount, Side, SideChoice};
 use crate::geometry::profile::ProfileError;
-use crate::geometry::{Frame, PoseConvention, Profile, Transform};
+use crate::geometry::{Frame, PoseConvention, PoseNotation, Profile, Transform};
 use crate::session::check::Finding;
+use crate::session::limits::{self, Quantity};
 use crate::session::model::{
     Capture, Edge, Published, Reading, Robot, Sensor, Session, Station, Target, Truth, UnknownFields, WrittenAngles,
 };
 
-use super::cursor::{Cursor, Object, Quantity, Refusal, listed};
-use super::limits;
+use super::cursor::{Cursor, Object, Refusal, listed};
 use super::names;
 
 /// What reading takes along besides the session: what it had to mend.
@@ -88,9 +88,11 @@ fn robot(cursor: &Cursor<'_>) -> Result<Robot, Refusal> {
     let object = cursor.object("an object that describes the robot")?;
     Ok(Robot {
         model: object.text_or_empty("model")?,
-        pose_convention: object
-            .optional("pose_convention")
-            .map_or_else(|| Ok(PoseConvention::default_convention()), |cursor| convention(&cursor))?,
+        notation: PoseNotation::of(
+            object
+                .optional("pose_convention")
+                .map_or_else(|| Ok(PoseConvention::default_convention()), |cursor| convention(&cursor))?,
+        ),
         position_std_mm: object.optional_number("position_std_mm", &limits::LENGTH_STD_MM)?,
         orientation_std_deg: object.optional_number("orientation_std_deg", &limits::ORIENTATION_STD_DEG)?,
         unknown: object.unknown(names::ROBOT),

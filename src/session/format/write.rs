@@ -57,7 +57,7 @@ pub fn to_json(session: &Session) -> String {
 fn robot(out: &mut Writer, robot: &Robot) {
     out.open(Layout::Line);
     out.field("model").text(&robot.model);
-    out.field("pose_convention").text(robot.pose_convention.id);
+    out.field("pose_convention").text(robot.notation.convention.id);
     out.optional_number("position_std_mm", robot.position_std_mm);
     out.optional_number("orientation_std_deg", robot.orientation_std_deg);
     out.unknown(&robot.unknown, names::ROBOT);

@@ -35,7 +35,7 @@ pub fn show(ui: &mut Ui, height: f32, view: &View<'_>, commands: &mut Vec<Comman
             let button = ui.button(words::COPY_TABLE).on_hover_text(words::COPY_TABLE_HINT);
             button.widget_info(|| WidgetInfo::labeled(Role::Button, true, words::COPY_TABLE_NAME));
             if button.clicked() {
-                ui.ctx().copy_text(model::plan_text(plan, view.session.robot.pose_convention));
+                ui.ctx().copy_text(model::plan_text(plan, view.session.robot.notation.convention));
             }
         }
         if view.plan.progress.is_some() {
@@ -62,7 +62,7 @@ pub fn show(ui: &mut Ui, height: f32, view: &View<'_>, commands: &mut Vec<Comman
 }
 
 fn poses(ui: &mut Ui, view: &View<'_>, plan: &Plan) {
-    let convention = view.session.robot.pose_convention;
+    let convention = view.session.robot.notation.convention;
     ui.spacing_mut().item_spacing.x = 0.0;
     let mut builder = table(ui, "next poses").column(Column::exact(NUMBER_WIDTH));
     for width in WIDTHS {

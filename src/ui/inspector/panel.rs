@@ -64,7 +64,7 @@ fn capture_section(
     ui.add_space(4.0);
     if let Some(capture) = station.captures.get(capture_idx) {
         let position = capture.base_from_flange.translation_mm();
-        let convention = document.session.robot.pose_convention;
+        let convention = document.session.robot.notation.convention;
         let angles = convention.angles_deg_from_rotation(&capture.base_from_flange.rotation());
         triple_row(ui, words::FLANGE_POSITION, position.into(), POSE_DECIMALS, "mm");
         triple_row(ui, &words::angle_names(convention.angle_names), angles, POSE_DECIMALS, "°");
@@ -147,7 +147,7 @@ fn method_text(ui: &Ui, method: Method) -> RichText {
 fn solution_section(ui: &mut Ui, document: &Document, solution: &Solution) {
     matrix(ui, solution);
     ui.add_space(12.0);
-    let convention = document.session.robot.pose_convention;
+    let convention = document.session.robot.notation.convention;
     ui.label(theme::strong(convention.label)).on_hover_text(words::convention_hint(convention.formula));
     ui.add_space(4.0);
     let translation = solution.flange_from_sensor.translation_mm();
@@ -234,7 +234,7 @@ fn triple_row(ui: &mut Ui, label: &str, values: [f64; 3], decimals: usize, unit:
 
 fn copy_menu(ui: &mut Ui, document: &Document, solution: &Solution) {
     ui.menu_button(format!("{} ▾", words::COPY), |ui| {
-        let convention = document.session.robot.pose_convention;
+        let convention = document.session.robot.notation.convention;
         if ui.button(words::COPY_MATRIX).clicked() {
             ui.ctx().copy_text(model::matrix_text(solution));
             ui.close();

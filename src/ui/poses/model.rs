@@ -45,7 +45,7 @@ pub fn rows(session: &Session, unfolded: &BTreeSet<usize>) -> Vec<Row> {
 pub fn pose_figures(session: &Session, station_idx: usize, capture_idx: usize) -> Option<[f64; 6]> {
     let capture = session.stations.get(station_idx)?.captures.get(capture_idx)?;
     let position = capture.base_from_flange.translation_mm();
-    let [a, b, c] = session.robot.pose_convention.angles_deg_from_rotation(&capture.base_from_flange.rotation());
+    let [a, b, c] = session.robot.notation.convention.angles_deg_from_rotation(&capture.base_from_flange.rotation());
     Some([position.x, position.y, position.z, a, b, c])
 }
 
@@ -177,7 +177,7 @@ mod tests {
         let [x, y, z, w, p, r] = pose_figures(&session, 2, 1).expect("there is this capture");
         let pose = &session.stations[2].captures[1].base_from_flange;
         assert!((crate::geometry::Vec3::new(x, y, z) - pose.translation_mm()).norm() < 1e-9);
-        let rotation = session.robot.pose_convention.rotation_from_angles_deg([w, p, r]);
+        let rotation = session.robot.notation.convention.rotation_from_angles_deg([w, p, r]);
         assert!(rotation.angle_to(&pose.rotation()) < 1e-9);
     }
 

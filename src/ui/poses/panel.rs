@@ -127,7 +127,7 @@ fn show_table(
     rows: &[Row],
     moved_to: Option<usize>,
 ) {
-    let angle_names = document.session.robot.pose_convention.angle_names;
+    let angle_names = document.session.robot.notation.convention.angle_names;
     // Cells touch, so that the hairlines between rows run through.
     ui.spacing_mut().item_spacing.x = 0.0;
     let density = Density::of(ui);

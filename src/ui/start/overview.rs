@@ -66,7 +66,7 @@ fn setup(session: &Session) -> Vec<(&'static str, String)> {
     let or_not_stated = |text: &str| if text.is_empty() { words::NOT_STATED.to_owned() } else { text.to_owned() };
     vec![
         (words::ROBOT, or_not_stated(&session.robot.model)),
-        (words::CONVENTION, session.robot.pose_convention.label.to_owned()),
+        (words::CONVENTION, session.robot.notation.convention.label.to_owned()),
         (words::POSITION_STD, stated(session.robot.position_std_mm, 3, "mm")),
         (words::ORIENTATION_STD, stated(session.robot.orientation_std_deg, 4, "°")),
         (words::SENSOR, or_not_stated(&session.sensor.model)),

@@ -1,9 +1,29 @@
 //! What a session's numbers may be. Beyond these limits it is a mistake of units or a broken file.
 
-use super::cursor::Quantity;
+use std::fmt;
 
-/// Off unit norm by more, a quaternion is not a rounded one but a mistake.
-pub(super) const QUATERNION_NORM_TOLERANCE: f64 = 1e-3;
+pub(super) use crate::geometry::notation::QUATERNION_NORM_TOLERANCE;
+
+/// A number's meaning and the values it may have, ends included.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Quantity {
+    pub what: &'static str,
+    pub min: f64,
+    pub max: f64,
+}
+
+impl Quantity {
+    pub fn admits(&self, value: f64) -> bool {
+        (self.min..=self.max).contains(&value)
+    }
+}
+
+impl fmt::Display for Quantity {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{} from {} to {}", self.what, self.min, self.max)
+    }
+}
+
 /// Off unit norm by more, a quaternion was rounded so much that it is worth a note.
 pub(super) const QUATERNION_NORM_NOTED: f64 = 1e-6;
 /// Off unit norm by less, a quaternion is kept to the bit, so that saving and loading change nothing.

@@ -1,0 +1,70 @@
+//! The one way in which the document changes.
+
+use std::sync::Arc;
+
+use crate::diagnose::{self, Remedy};
+use crate::session::edit::CellValue;
+use crate::session::{Edit, History, Place, Session};
+use crate::text::diagnosis::remedy_undo_label;
+use crate::text::edits::edit_label;
+
+use super::{NoticeKind, Workbench};
+
+impl Workbench {
+    /// Makes an edit; one that cannot be made is told, and nothing changes.
+    pub(super) fn edit(&mut self, edit: &Edit, gesture: Option<u64>) {
+        let _ = gesture;
+        let Some(document) = &self.document else { return };
+        match edit.apply(&document.session) {
+            Ok(changed) => {
+                let label = edit_label(edit, &document.session);
+                self.replace_session(changed, label);
+            }
+            Err(refusal) => self.notify(NoticeKind::Error, refusal.to_string()),
+        }
+    }
+
+    pub(super) fn edit_station(&mut self, station_idx: usize, value: CellValue) {
+        self.edit(&Edit::SetCells(vec![(Place { station_idx, capture_idx: 0 }, value)]), None);
+    }
+
+    pub(super) fn go_through_history(&mut self, steps: isize) {
+        for _ in 0..steps.unsigned_abs() {
+            self.step_history(if steps < 0 { History::undo } else { History::redo });
+        }
+    }
+
+    pub(super) fn apply_remedy(&mut self, remedy: &Remedy) {
+        let Some(document) = &self.document else { return };
+        let label = remedy_undo_label(remedy, &document.session);
+        self.replace_session(diagnose::remedy::apply(&document.session, remedy), label);
+    }
+
+    /// One edit that can be undone; one that changes nothing is none.
+    pub(super) fn replace_session(&mut self, changed: Session, label: String) {
+        let Some(document) = &mut self.document else { return };
+        if changed == *document.session {
+            return;
+        }
+        let before = std::mem::replace(&mut document.session, Arc::new(changed));
+        document.history.record(label, before);
+        self.touch();
+    }
+
+    pub(super) fn step_history(&mut self, step: impl FnOnce(&mut History, Arc<Session>) -> Option<Arc<Session>>) {
+        let Some(document) = &mut self.document else { return };
+        if let Some(session) = step(&mut document.history, Arc::clone(&document.session)) {
+            document.session = session;
+            self.touch();
+        }
+    }
+
+    /// The document has changed: a new revision, to be solved.
+    pub(super) fn touch(&mut self) {
+        self.last_revision += 1;
+        if let Some(document) = &mut self.document {
+            document.revision = self.last_revision;
+        }
+        self.start_solving();
+    }
+}

@@ -1,0 +1,355 @@
+//! Document, results, jobs and notices, changed only by commands and finished jobs.
+
+mod edits;
+mod files;
+mod imports;
+mod studies;
+
+use std::collections::VecDeque;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use crate::calibrate::validation::Bootstrap;
+use crate::diagnose::{Diagnosis, ReadingFit};
+use crate::plan::{Limits, Plan, PlanRefusal};
+use crate::session::edit::CellValue;
+use crate::session::{History, Session, SessionError};
+use crate::watch::Cancelled;
+
+use super::jobs::{JobOutcome, Slot, Wake};
+use super::study::Study;
+use super::{Command, Document};
+
+use self::files::{Loaded, Save};
+pub use self::imports::ImportDraft;
+pub use self::studies::Results;
+
+/// How serious a notice is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoticeKind {
+    /// Something was done.
+    Done,
+    /// Something could not be done.
+    Error,
+}
+
+/// Something to tell the user, shown until dismissed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Notice {
+    /// For [`Command::DismissNotice`].
+    pub id: u64,
+    /// How serious.
+    pub kind: NoticeKind,
+    /// Whether it is about opening a file, and so belongs where the file was chosen.
+    pub is_of_opening: bool,
+    /// The sentence.
+    pub message: String,
+}
+
+/// Progress of a job.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// Parts done.
+    pub done: usize,
+    /// Parts in all; 0 while unknown.
+    pub total: usize,
+}
+
+impl Progress {
+    /// The part that is done, from 0 to 1.
+    #[must_use]
+    #[expect(clippy::cast_precision_loss, reason = "to be seen as a bar of a few hundred points")]
+    pub fn fraction(self) -> f32 {
+        if self.total == 0 { 0.0 } else { self.done as f32 / self.total as f32 }
+    }
+}
+
+/// The state behind the window.
+pub struct Workbench {
+    wake: Wake,
+    document: Option<Document>,
+    results: Option<Arc<Results>>,
+    notices: Vec<Notice>,
+    plan_limits: Limits,
+    last_revision: u64,
+    last_notice_id: u64,
+    loading: Slot<Loaded>,
+    /// The revision on the bench when loading began.
+    revision_before_loading: Option<u64>,
+    saving: Slot<(Save, Result<(), SessionError>)>,
+    save_queue: VecDeque<Save>,
+    solving: Slot<Result<Results, Cancelled>>,
+    diagnosis: Study<Diagnosis>,
+    plan: Study<Result<Plan, PlanRefusal>>,
+    readings: Study<Vec<ReadingFit>>,
+    bootstrap: Study<Bootstrap>,
+    import: Option<ImportDraft>,
+}
+
+impl Workbench {
+    /// An empty workbench; `wake` is called from worker threads when there is news for [`Self::poll`].
+    #[must_use]
+    pub fn new(wake: Wake) -> Self {
+        Self {
+            wake,
+            document: None,
+            results: None,
+            notices: Vec::new(),
+            plan_limits: Limits::default(),
+            last_revision: 0,
+            last_notice_id: 0,
+            loading: Slot::default(),
+            saving: Slot::default(),
+            revision_before_loading: None,
+            save_queue: VecDeque::new(),
+            solving: Slot::default(),
+            diagnosis: Study::default(),
+            plan: Study::default(),
+            readings: Study::default(),
+            bootstrap: Study::default(),
+            import: None,
+        }
+    }
+
+    /// The open session.
+    #[must_use]
+    pub const fn document(&self) -> Option<&Document> {
+        self.document.as_ref()
+    }
+
+    /// The last results; see [`Self::results_are_current`].
+    #[must_use]
+    pub fn results(&self) -> Option<&Results> {
+        self.results.as_deref()
+    }
+
+    /// Whether the results belong to the document as it is now.
+    #[must_use]
+    pub fn results_are_current(&self) -> bool {
+        self.results.as_ref().is_some_and(|results| self.is_current(results.revision))
+    }
+
+    /// Whether a revision is that of the document as it is now.
+    #[must_use]
+    pub fn is_current(&self, revision: u64) -> bool {
+        self.document.as_ref().is_some_and(|document| document.revision == revision)
+    }
+
+    /// What is wrong with the session. It follows the results by itself.
+    #[must_use]
+    pub const fn diagnosis(&self) -> &Study<Diagnosis> {
+        &self.diagnosis
+    }
+
+    /// The diagnosis of the document as it is now, once it is there.
+    #[must_use]
+    pub fn current_diagnosis(&self) -> Option<&Diagnosis> {
+        self.diagnosis.last().filter(|found| self.is_current(found.revision)).map(|found| &found.value)
+    }
+
+    /// The plan for the document as it is now, once it is there.
+    #[must_use]
+    pub fn current_plan(&self) -> Option<&Plan> {
+        self.plan.last().filter(|found| self.is_current(found.revision)).and_then(|found| found.value.as_ref().ok())
+    }
+
+    /// Where to measure next, for the best available solution. It follows the results by itself.
+    #[must_use]
+    pub const fn plan(&self) -> &Study<Result<Plan, PlanRefusal>> {
+        &self.plan
+    }
+
+    /// Within what limits the next stations are planned.
+    #[must_use]
+    pub const fn plan_limits(&self) -> &Limits {
+        &self.plan_limits
+    }
+
+    /// The ways to read the poses, where they were asked for.
+    #[must_use]
+    pub const fn readings(&self) -> &Study<Vec<ReadingFit>> {
+        &self.readings
+    }
+
+    /// The spread over stations drawn with replacement, where it was asked for.
+    #[must_use]
+    pub const fn bootstrap(&self) -> &Study<Bootstrap> {
+        &self.bootstrap
+    }
+
+    /// The preview of an import, while one is open.
+    #[must_use]
+    pub const fn import(&self) -> Option<&ImportDraft> {
+        self.import.as_ref()
+    }
+
+    /// Notices not yet dismissed, oldest first.
+    #[must_use]
+    pub fn notices(&self) -> &[Notice] {
+        &self.notices
+    }
+
+    /// Progress of the solver while it runs.
+    #[must_use]
+    pub fn solve_progress(&self) -> Option<Progress> {
+        self.solving.progress().map(|(done, total)| Progress { done, total })
+    }
+
+    /// Whether a file is being read.
+    #[must_use]
+    pub const fn is_loading(&self) -> bool {
+        self.loading.is_running()
+    }
+
+    /// Whether a session is on its way to its file.
+    #[must_use]
+    pub fn is_saving(&self) -> bool {
+        self.saving.is_running() || !self.save_queue.is_empty()
+    }
+
+    /// Whether any work is under way in the background.
+    #[must_use]
+    pub const fn is_busy(&self) -> bool {
+        self.loading.is_running()
+            || self.saving.is_running()
+            || self.solving.is_running()
+            || self.diagnosis.is_running()
+            || self.plan.is_running()
+            || self.readings.is_running()
+            || self.bootstrap.is_running()
+    }
+
+    /// Carries out one command.
+    pub fn apply(&mut self, command: Command) {
+        match command {
+            Command::Open(path) => self.start_loading(path),
+            Command::OpenSample(sample_idx) => self.open_sample(sample_idx),
+            Command::CloseDocument => self.close_document(),
+            Command::Save => self.save(),
+            Command::SaveAs(path) => self.start_saving(path),
+            Command::SaveAnyway => self.save_anyway(),
+            Command::Reload => self.reload(),
+            Command::Recover(idx) => self.recover(idx),
+            Command::DiscardRecoverable(idx) => self.discard_recoverable(idx),
+            Command::Edit { edit, gesture } => self.edit(&edit, gesture),
+            Command::StepHistory(steps) => self.go_through_history(steps),
+            Command::Import(paths) => self.start_import(paths),
+            Command::ImportText(text) => self.start_import_of_text(text),
+            Command::SetImportOptions(options) => self.set_import_options(*options),
+            Command::FinishImport(into) => self.finish_import(into),
+            Command::CancelImport => self.cancel_import(),
+            Command::ExportPoses(path) => self.export_poses(path),
+            Command::ExportProfiles(folder) => self.export_profiles(folder),
+            Command::SetStationEnabled { station_idx, enabled } => {
+                self.edit_station(station_idx, CellValue::Used(enabled));
+            }
+            Command::SetStationSide { station_idx, side } => self.edit_station(station_idx, CellValue::Side(side)),
+            Command::ApplyRemedy(remedy) => self.apply_remedy(&remedy),
+            Command::Undo => self.step_history(History::undo),
+            Command::Redo => self.step_history(History::redo),
+            Command::Solve => self.start_solving(),
+            Command::CancelSolve => self.solving.cancel(),
+            Command::Diagnose => self.diagnose_again(),
+            Command::CancelDiagnosis => self.diagnosis.cancel(),
+            Command::RankReadings => self.start_ranking(),
+            Command::CancelReadings => self.readings.cancel(),
+            Command::StartBootstrap { num_draws } => self.start_bootstrap(num_draws),
+            Command::CancelBootstrap => self.bootstrap.cancel(),
+            Command::SetPlanLimits(limits) => {
+                self.plan_limits = limits;
+                self.plan.clear();
+                self.start_planning();
+            }
+            Command::DismissNotice(id) => self.notices.retain(|notice| notice.id != id),
+        }
+    }
+
+    /// Takes in the results of finished jobs. Answers whether anything changed.
+    pub fn poll(&mut self) -> bool {
+        let mut changed = false;
+        // Saves first: a file that arrives in the same turn takes the saved document off the bench.
+        if let Some(outcome) = self.saving.poll() {
+            changed = true;
+            match outcome {
+                JobOutcome::Done((save, Ok(()))) => self.note_saved(save),
+                JobOutcome::Done((_, Err(error))) => self.notify(NoticeKind::Error, error.to_string()),
+                broken => self.notify_broken("saving", &broken),
+            }
+            if let Some(next) = self.save_queue.pop_front() {
+                self.run_save(next);
+            }
+        }
+        if let Some(outcome) = self.loading.poll() {
+            changed = true;
+            match outcome {
+                JobOutcome::Done(Loaded { path, session: Ok(session) }) => self.take_loaded(session, path),
+                JobOutcome::Done(Loaded { session: Err(error), .. }) => self.notify_of_opening(error.to_string()),
+                broken => {
+                    self.notify_broken("reading the file", &broken);
+                    self.mark_newest_as_of_opening();
+                }
+            }
+        }
+        if let Some(outcome) = self.solving.poll() {
+            changed = true;
+            match outcome {
+                JobOutcome::Done(Ok(results)) => self.take_results(results),
+                JobOutcome::Done(Err(Cancelled)) => {}
+                broken => self.notify_broken("solving", &broken),
+            }
+        }
+        for (what, ended) in [
+            ("the diagnosis", self.diagnosis.poll()),
+            ("planning", self.plan.poll()),
+            ("trying other conventions", self.readings.poll()),
+            ("the bootstrap", self.bootstrap.poll()),
+        ] {
+            let Some(ended) = ended else { continue };
+            changed = true;
+            if !matches!(ended, JobOutcome::Done(())) {
+                self.notify_broken(what, &ended);
+            }
+        }
+        changed
+    }
+
+    /// Puts a session on the bench and solves it.
+    pub fn open_session(&mut self, session: Session, path: Option<PathBuf>) {
+        self.forget_errors();
+        self.last_revision += 1;
+        self.document = Some(Document::new(session, path, self.last_revision));
+        self.forget_results();
+        self.start_solving();
+    }
+
+    fn notify(&mut self, kind: NoticeKind, message: String) {
+        self.last_notice_id += 1;
+        self.notices.push(Notice { id: self.last_notice_id, kind, is_of_opening: false, message });
+    }
+
+    fn notify_of_opening(&mut self, message: String) {
+        self.notify(NoticeKind::Error, message);
+        self.mark_newest_as_of_opening();
+    }
+
+    fn mark_newest_as_of_opening(&mut self) {
+        if let Some(notice) = self.notices.last_mut() {
+            notice.is_of_opening = true;
+        }
+    }
+
+    /// Something worked: what went wrong before it is history.
+    fn forget_errors(&mut self) {
+        self.notices.retain(|notice| notice.kind != NoticeKind::Error);
+    }
+
+    fn notify_broken<T>(&mut self, what: &str, outcome: &JobOutcome<T>) {
+        let message = match outcome {
+            JobOutcome::NotStarted(error) => format!("{what} could not start: {error}"),
+            JobOutcome::Done(_) | JobOutcome::Panicked => {
+                format!("{what} broke down; this is a bug in Handeye. Your session is unchanged")
+            }
+        };
+        self.notify(NoticeKind::Error, message);
+    }
+}

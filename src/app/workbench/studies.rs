@@ -1,0 +1,136 @@
+//! What is computed of the document: results, diagnosis, plan and other studies.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use crate::calibrate::validation::bootstrap;
+use crate::calibrate::{BallProblem, Method, MethodResult, best_available, solve_all};
+use crate::diagnose::{self, Case};
+use crate::plan::{Limits, PlanRefusal, next_stations};
+use crate::session::{Measured, Session, ball_problem, measure};
+use crate::watch::Cancelled;
+
+use super::Workbench;
+
+/// Stations that are planned ahead: about as many as one adds before looking again.
+const NUM_PLANNED: usize = 4;
+/// The same session gives the same bootstrap.
+const BOOTSTRAP_SEED: u64 = 1;
+
+/// What the methods made of a revision of the document.
+#[derive(Clone, Debug)]
+pub struct Results {
+    /// The revision they belong to.
+    pub revision: u64,
+    /// The arcs of all captures.
+    pub measured: Arc<Measured>,
+    /// What the methods were given; `None` if the session is none for the ball.
+    pub problem: Option<Arc<BallProblem>>,
+    /// One entry a method, in the order of [`Method::ALL`]; empty if the session is none for the ball.
+    pub methods: Vec<MethodResult>,
+    /// Why there are no methods, in words.
+    pub refusal: Option<String>,
+    /// How long it took.
+    pub elapsed: Duration,
+}
+
+impl Results {
+    /// The result of one method.
+    #[must_use]
+    pub fn method(&self, method: Method) -> Option<&MethodResult> {
+        self.methods.iter().find(|result| result.method == method)
+    }
+}
+
+impl Workbench {
+    pub(super) fn forget_results(&mut self) {
+        self.results = None;
+        self.diagnosis.clear();
+        self.plan.clear();
+        self.readings.clear();
+        self.bootstrap.clear();
+        self.plan_limits = Limits::default();
+    }
+
+    /// The results are shown at once; what is to be said about them follows.
+    pub(super) fn take_results(&mut self, results: Results) {
+        self.results = Some(Arc::new(results));
+        self.start_diagnosing();
+        self.start_planning();
+    }
+
+    pub(super) fn start_solving(&mut self) {
+        // They would speak of what is about to change; what they have found stays, marked as out of date.
+        self.diagnosis.cancel();
+        self.plan.cancel();
+        self.readings.cancel();
+        self.bootstrap.cancel();
+        let Some(document) = &self.document else { return };
+        let session = Arc::clone(&document.session);
+        let revision = document.revision;
+        let previous = self.results.as_ref().map(|results| Arc::clone(&results.measured));
+        self.solving.start("solve", &self.wake, move |watch| {
+            let start = Instant::now();
+            let measured = Arc::new(measure(&session, previous.as_deref(), watch)?);
+            let (problem, methods, refusal) = match ball_problem(&session, &measured) {
+                Ok(problem) => {
+                    let methods = solve_all(&problem, &Method::ALL, watch)?;
+                    (Some(Arc::new(problem)), methods, None)
+                }
+                Err(refusal) => (None, Vec::new(), Some(refusal.to_string())),
+            };
+            Ok(Results { revision, measured, problem, methods, refusal, elapsed: start.elapsed() })
+        });
+    }
+
+    /// Document, problem and results of the same revision, if there are any.
+    pub(super) fn case(&self) -> Option<(Arc<Session>, Arc<BallProblem>, Arc<Results>)> {
+        let document = self.document.as_ref()?;
+        let results = self.results.as_ref().filter(|results| results.revision == document.revision)?;
+        let problem = results.problem.as_ref()?;
+        Some((Arc::clone(&document.session), Arc::clone(problem), Arc::clone(results)))
+    }
+
+    /// Results that are out of date are made anew first; the diagnosis follows them.
+    pub(super) fn diagnose_again(&mut self) {
+        if self.results_are_current() {
+            self.start_diagnosing();
+        } else {
+            self.start_solving();
+        }
+    }
+
+    pub(super) fn start_diagnosing(&mut self) {
+        let Some((session, problem, results)) = self.case() else { return };
+        self.diagnosis.start("diagnose", &self.wake, results.revision, move |watch| {
+            diagnose::diagnose(Case { session: &session, problem: &problem, results: &results.methods }, watch)
+        });
+    }
+
+    pub(super) fn start_ranking(&mut self) {
+        let Some((session, problem, results)) = self.case() else { return };
+        self.readings.start("try conventions", &self.wake, results.revision, move |watch| {
+            diagnose::convention::rank(&session, &problem, watch)
+        });
+    }
+
+    pub(super) fn start_planning(&mut self) {
+        let Some((_, problem, results)) = self.case() else { return };
+        let limits = self.plan_limits;
+        self.plan.start("plan", &self.wake, results.revision, move |_| {
+            let solution = best_available(&results.methods).ok_or(PlanRefusal::Undetermined);
+            Ok(solution.and_then(|solution| next_stations(&problem, solution, &limits, NUM_PLANNED)))
+        });
+    }
+
+    pub(super) fn start_bootstrap(&mut self, num_draws: usize) {
+        let Some((_, _, results)) = self.case() else { return };
+        if best_available(&results.methods).is_none() {
+            return;
+        }
+        self.bootstrap.start("bootstrap", &self.wake, results.revision, move |watch| {
+            best_available(&results.methods)
+                .map_or(Err(Cancelled), |solution| bootstrap(solution, num_draws, BOOTSTRAP_SEED, watch))
+        });
+    }
+}

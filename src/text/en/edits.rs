@@ -1,0 +1,65 @@
+//! What the edits are called in the undo menu and the history.
+
+use crate::session::edit::{CellValue, Edit, Row, SetupField};
+use crate::session::{Place, Session};
+
+use super::plural;
+
+/// The edit's name, as it follows "Undo: ".
+#[must_use]
+pub fn edit_label(edit: &Edit, session: &Session) -> String {
+    match edit {
+        Edit::SetCells(cells) => cells_label(cells, session),
+        Edit::InsertStations { stations, .. } => format!("add {} station{}", stations.len(), plural(stations.len())),
+        Edit::Duplicate(rows) => format!("duplicate {}", rows_name(rows, session)),
+        Edit::Remove(rows) => format!("delete {}", rows_name(rows, session)),
+        Edit::Reorder(_) => "reorder stations".to_owned(),
+        Edit::Setup(field) => format!("change {}", field_name(field)),
+        Edit::SwitchNotation(notation) => format!("show poses as {}", notation.convention.label),
+        Edit::Reinterpret(notation) => format!("read the same numbers as {}", notation.convention.label),
+    }
+}
+
+fn station_name(station_idx: usize, session: &Session) -> String {
+    session.stations.get(station_idx).map_or_else(String::new, |station| format!("station {}", station.label))
+}
+
+fn rows_name(rows: &[Row], session: &Session) -> String {
+    match rows {
+        [Row::Station(station_idx)] => station_name(*station_idx, session),
+        [Row::Capture(place)] => {
+            format!("capture {} of {}", place.capture_idx + 1, station_name(place.station_idx, session))
+        }
+        _ => format!("{} rows", rows.len()),
+    }
+}
+
+fn cells_label(cells: &[(Place, CellValue)], session: &Session) -> String {
+    let [(place, value)] = cells else { return format!("change {} cells", cells.len()) };
+    let station = station_name(place.station_idx, session);
+    match value {
+        CellValue::Used(true) => format!("use {station}"),
+        CellValue::Used(false) => format!("leave out {station}"),
+        CellValue::Label(_) => format!("rename {station}"),
+        CellValue::Side(_) => format!("set side of {station}"),
+        CellValue::Edge(_) => format!("set edge of {station}"),
+        CellValue::Pose(..) => format!("change pose of {station}"),
+        CellValue::Step(_) => format!("change step of {station}"),
+        CellValue::Reading(_) => format!("change reading of {station}"),
+    }
+}
+
+const fn field_name(field: &SetupField) -> &'static str {
+    match field {
+        SetupField::Name(_) => "the session's name",
+        SetupField::Notes(_) => "the notes",
+        SetupField::RobotModel(_) => "the robot's name",
+        SetupField::PositionStdMm(_) => "the noise of positions",
+        SetupField::OrientationStdDeg(_) => "the noise of orientations",
+        SetupField::SensorModel(_) => "the profiler's name",
+        SetupField::ProfileStdMm(_) => "the noise of profiles",
+        SetupField::ReferenceDistanceMm(_) => "the reference distance",
+        SetupField::Target(_) => "the target",
+        SetupField::Mount(_) => "where the sensor is",
+    }
+}
