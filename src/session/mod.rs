@@ -15,6 +15,6 @@ pub mod table;
 pub use edit::{Edit, EditRefusal, Place, Row, SetupField};
 pub use error::SessionError;
 pub use format::{load, parse, save, to_json};
-pub use history::History;
+pub use history::{History, new_gesture};
 pub use measure::{Measured, NotABallSession, ball_problem, measure};
 pub use model::{Capture, Edge, Published, Reading, Robot, Sensor, Session, Station, Target, Truth, WrittenAngles};

@@ -13,12 +13,11 @@ use super::{NoticeKind, Workbench};
 impl Workbench {
     /// Makes an edit; one that cannot be made is told, and nothing changes.
     pub(super) fn edit(&mut self, edit: &Edit, gesture: Option<u64>) {
-        let _ = gesture;
         let Some(document) = &self.document else { return };
         match edit.apply(&document.session) {
             Ok(changed) => {
                 let label = edit_label(edit, &document.session);
-                self.replace_session(changed, label);
+                self.replace_session(changed, label, gesture);
             }
             Err(refusal) => self.notify(NoticeKind::Error, refusal.to_string()),
         }
@@ -29,34 +28,34 @@ impl Workbench {
     }
 
     pub(super) fn go_through_history(&mut self, steps: isize) {
+        let Some(document) = &mut self.document else { return };
+        let step = if steps < 0 { History::undo } else { History::redo };
+        let mut has_moved = false;
         for _ in 0..steps.unsigned_abs() {
-            self.step_history(if steps < 0 { History::undo } else { History::redo });
+            let Some(session) = step(&mut document.history, Arc::clone(&document.session)) else { break };
+            document.session = session;
+            has_moved = true;
+        }
+        if has_moved {
+            self.touch();
         }
     }
 
     pub(super) fn apply_remedy(&mut self, remedy: &Remedy) {
         let Some(document) = &self.document else { return };
         let label = remedy_undo_label(remedy, &document.session);
-        self.replace_session(diagnose::remedy::apply(&document.session, remedy), label);
+        self.replace_session(diagnose::remedy::apply(&document.session, remedy), label, None);
     }
 
     /// One edit that can be undone; one that changes nothing is none.
-    pub(super) fn replace_session(&mut self, changed: Session, label: String) {
+    pub(super) fn replace_session(&mut self, changed: Session, label: String, gesture: Option<u64>) {
         let Some(document) = &mut self.document else { return };
         if changed == *document.session {
             return;
         }
         let before = std::mem::replace(&mut document.session, Arc::new(changed));
-        document.history.record(label, before);
+        document.history.record(label, gesture, before, &document.session);
         self.touch();
-    }
-
-    pub(super) fn step_history(&mut self, step: impl FnOnce(&mut History, Arc<Session>) -> Option<Arc<Session>>) {
-        let Some(document) = &mut self.document else { return };
-        if let Some(session) = step(&mut document.history, Arc::clone(&document.session)) {
-            document.session = session;
-            self.touch();
-        }
     }
 
     /// The document has changed: a new revision, to be solved.

@@ -13,7 +13,7 @@ use crate::calibrate::validation::Bootstrap;
 use crate::diagnose::{Diagnosis, ReadingFit};
 use crate::plan::{Limits, Plan, PlanRefusal};
 use crate::session::edit::CellValue;
-use crate::session::{History, Session, SessionError};
+use crate::session::{Session, SessionError};
 use crate::watch::Cancelled;
 
 use super::jobs::{JobOutcome, Slot, Wake};
@@ -245,8 +245,8 @@ impl Workbench {
             }
             Command::SetStationSide { station_idx, side } => self.edit_station(station_idx, CellValue::Side(side)),
             Command::ApplyRemedy(remedy) => self.apply_remedy(&remedy),
-            Command::Undo => self.step_history(History::undo),
-            Command::Redo => self.step_history(History::redo),
+            Command::Undo => self.go_through_history(-1),
+            Command::Redo => self.go_through_history(1),
             Command::Solve => self.start_solving(),
             Command::CancelSolve => self.solving.cancel(),
             Command::Diagnose => self.diagnose_again(),

@@ -17,6 +17,17 @@ pub fn edit_label(edit: &Edit, session: &Session) -> String {
         Edit::Setup(field) => format!("change {}", field_name(field)),
         Edit::SwitchNotation(notation) => format!("show poses as {}", notation.convention.label),
         Edit::Reinterpret(notation) => format!("read the same numbers as {}", notation.convention.label),
+        Edit::Several(edits) => several_label(edits, session),
+    }
+}
+
+/// Few are named one by one; of more than two, the first and how many others.
+fn several_label(edits: &[Edit], session: &Session) -> String {
+    match edits {
+        [] => "change nothing".to_owned(),
+        [only] => edit_label(only, session),
+        [first, second] => format!("{} and {}", edit_label(first, session), edit_label(second, session)),
+        [first, others @ ..] => format!("{} and {} other changes", edit_label(first, session), others.len()),
     }
 }
 
