@@ -13,7 +13,7 @@ fn main() -> ExitCode {
     };
     match args.command {
         Some(command) => command.run(),
-        None => match ui::run(ui::Start { file: args.file }) {
+        None => match ui::run(ui::Start { file: args.file, ..ui::Start::default() }) {
             Ok(()) => ExitCode::SUCCESS,
             Err(error) => cli::fail(cli::EXIT_WRONG_INPUT, &error),
         },

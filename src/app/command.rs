@@ -27,6 +27,8 @@ pub enum ImportInto {
 pub enum Command {
     /// Reads a session file in the background.
     Open(PathBuf),
+    /// Begins an empty session for a target.
+    NewSession(Target),
     /// Opens a sample by its index in [`crate::session::samples::ALL`].
     OpenSample(usize),
     /// Goes back to the start page.
@@ -37,6 +39,10 @@ pub enum Command {
     SaveAs(PathBuf),
     /// Writes the session to its file although another program has changed that file meanwhile.
     SaveAnyway,
+    /// Leaves a file that another program has changed as it is: the save that met it is given up.
+    GiveUpSaving,
+    /// Looks whether another program has changed the session's file.
+    CheckFile,
     /// Reads the session's file again; what was edited meanwhile can be brought back by undo.
     Reload,
     /// Opens what a run that ended badly left behind, by its index in [`super::Workbench::recoverable`].

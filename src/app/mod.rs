@@ -5,10 +5,12 @@ pub mod command;
 pub mod compare;
 pub mod document;
 pub mod jobs;
+pub mod recovery;
 pub mod study;
 pub mod workbench;
 
 pub use command::{Command, ImportInto};
-pub use document::Document;
+pub use document::{Document, OnDisk};
+pub use recovery::{Recoverable, RecoverySettings};
 pub use study::{Found, Study};
 pub use workbench::{ImportDraft, Notice, NoticeKind, Progress, Results, Workbench};

@@ -97,9 +97,13 @@ impl Profile {
     }
 }
 
-/// Equal point by point; missing points are equal to missing points.
+/// Equal point by point; missing points are equal to missing points. One and the same profile is not looked through, so
+/// sessions that share theirs are compared in no time.
 impl PartialEq for Profile {
     fn eq(&self, other: &Self) -> bool {
+        if std::ptr::eq(self, other) {
+            return true;
+        }
         self.x_mm == other.x_mm
             && self.z_mm.len() == other.z_mm.len()
             && self.z_mm.iter().zip(&other.z_mm).all(|(a, b)| a == b || (a.is_nan() && b.is_nan()))

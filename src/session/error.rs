@@ -90,7 +90,7 @@ pub enum SessionError {
         expected: String,
     },
     /// The operating system did not let us write it; an older file of this name is as it was.
-    #[error("cannot save {file}: {problem}")]
+    #[error("cannot save {file}: {problem}; {}", way_out(*kind))]
     Unwritable {
         /// The file.
         file: String,
@@ -99,12 +99,52 @@ pub enum SessionError {
         /// The operating system's words.
         problem: String,
     },
+    /// The file is marked as not to be changed.
+    #[error("cannot save {file}: it is read-only; use \"Save as…\" to write another file")]
+    ReadOnly {
+        /// The file.
+        file: String,
+    },
+    /// Another program has written the file since it was read.
+    #[error(
+        "did not save {file}: another program has changed it since it was opened; save over it, save as another file, or reload it"
+    )]
+    ChangedOnDisk {
+        /// The file.
+        file: String,
+    },
     /// The session holds something that could not be read back; an older file of this name is as it was.
     #[error("cannot save: the session could not be opened again; {refusal}")]
     WouldNotReadBack {
         /// What reading would say.
         refusal: Box<SessionError>,
     },
+}
+
+/// What to do where a file could not be written.
+const fn way_out(kind: io::ErrorKind) -> &'static str {
+    match kind {
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded | io::ErrorKind::FileTooLarge => {
+            "a file that was there is as it was. Free some space, or save in another place"
+        }
+        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
+            "you may not write in this folder. Save in another one"
+        }
+        io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => "this folder is not there. Save in another one",
+        _ => "a file that was there is as it was. Try again, or save in another place",
+    }
+}
+
+/// The operating system's words for what went wrong, without the name of a temporary file.
+#[must_use]
+pub(crate) fn system_words(error: &io::Error) -> String {
+    let from_system = error.raw_os_error().map(io::Error::from_raw_os_error);
+    let words = match (&from_system, error.kind()) {
+        (Some(from_system), _) => from_system.to_string(),
+        (None, io::ErrorKind::Other) => error.to_string(),
+        (None, kind) => kind.to_string(),
+    };
+    on_one_line(&words)
 }
 
 /// A file's name or a piece of text on one line: control characters would break the line that names them.

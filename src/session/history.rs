@@ -28,6 +28,7 @@ pub struct History {
     redo: Vec<Step>,
     /// The gesture that the newest step belongs to, as long as nothing else has happened.
     open_gesture: Option<u64>,
+    has_forgotten: bool,
 }
 
 impl History {
@@ -52,6 +53,7 @@ impl History {
         }
         if self.undo.len() == MAX_STEPS {
             self.undo.remove(0);
+            self.has_forgotten = true;
         }
         self.undo.push(Step { label: label.into(), before });
         self.open_gesture = gesture;
@@ -89,6 +91,12 @@ impl History {
     /// The edits that can be brought back, the next one first.
     pub fn redo_labels(&self) -> impl ExactSizeIterator<Item = &str> {
         self.redo.iter().rev().map(|step| step.label.as_str())
+    }
+
+    /// Whether all steps since the beginning are still there.
+    #[must_use]
+    pub const fn is_complete(&self) -> bool {
+        !self.has_forgotten
     }
 
     fn step(from: &mut Vec<Step>, to: &mut Vec<Step>, present: Arc<Session>) -> Option<Arc<Session>> {

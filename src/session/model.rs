@@ -192,6 +192,23 @@ pub struct Session {
 }
 
 impl Session {
+    /// An empty session for a target.
+    #[must_use]
+    pub fn new(target: Target) -> Self {
+        Self {
+            name: String::new(),
+            notes: String::new(),
+            robot: Robot::default(),
+            sensor: Sensor::default(),
+            target,
+            mount: Mount::default(),
+            stations: Vec::new(),
+            published: None,
+            truth: None,
+            unknown: UnknownFields::new(),
+        }
+    }
+
     /// Number of captures over all stations.
     #[must_use]
     pub fn num_captures(&self) -> usize {

@@ -3,7 +3,7 @@
 use egui::{Key, KeyboardShortcut, Modifiers};
 
 use crate::app::Workbench;
-use crate::text::shell as words;
+use crate::text::{document as document_words, shell as words};
 
 use super::rail::Step;
 
@@ -26,6 +26,8 @@ pub enum Action {
     Undo,
     /// Brings back what was undone.
     Redo,
+    /// Shows or hides the list of edits.
+    History,
     /// Shows or hides the help window.
     Help,
     /// Goes to a step of the rail.
@@ -33,8 +35,17 @@ pub enum Action {
 }
 
 /// All actions with a shortcut. Those with more modifiers come first, as a shortcut also matches with fewer.
-const WITH_SHORTCUT: [Action; 8] =
-    [Action::SaveAs, Action::Redo, Action::Open, Action::Save, Action::Undo, Action::Close, Action::Quit, Action::Help];
+const WITH_SHORTCUT: [Action; 9] = [
+    Action::SaveAs,
+    Action::Redo,
+    Action::Open,
+    Action::Save,
+    Action::Undo,
+    Action::Close,
+    Action::Quit,
+    Action::History,
+    Action::Help,
+];
 
 impl Action {
     /// Its shortcut, if it has one.
@@ -48,6 +59,7 @@ impl Action {
             Self::Quit => (Modifiers::COMMAND, Key::Q),
             Self::Undo => (Modifiers::COMMAND, Key::Z),
             Self::Redo => (CTRL_SHIFT, Key::Z),
+            Self::History => (Modifiers::COMMAND, Key::H),
             Self::Help => (Modifiers::NONE, Key::F1),
             Self::OpenSample(_) | Self::GoTo(_) => return None,
         };
@@ -71,9 +83,16 @@ impl Action {
             Self::Redo => history
                 .and_then(|history| history.redo_label())
                 .map_or_else(|| words::REDO.to_owned(), words::redo_label),
+            Self::History => document_words::HISTORY_ENTRY.to_owned(),
             Self::Help => words::SHORTCUTS_AND_ABOUT.to_owned(),
             Self::GoTo(step) => step.name().to_owned(),
         }
+    }
+
+    /// Whether it concerns what is being typed, which is taken over first.
+    #[must_use]
+    pub const fn takes_what_is_typed(self) -> bool {
+        !matches!(self, Self::Help | Self::History | Self::GoTo(_))
     }
 
     /// Why it cannot be done now; `None` if it can.
@@ -81,7 +100,7 @@ impl Action {
     pub fn refusal(self, workbench: &Workbench) -> Option<&'static str> {
         let document = workbench.document();
         match self {
-            Self::Save | Self::SaveAs | Self::Close => document.is_none().then_some(words::NO_DOCUMENT),
+            Self::Save | Self::SaveAs | Self::Close | Self::History => document.is_none().then_some(words::NO_DOCUMENT),
             Self::Undo => document
                 .is_none_or(|document| document.history.undo_label().is_none())
                 .then_some(words::NOTHING_TO_UNDO),

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use egui::{Context, Frame, Grid, Id, Key, Modal, TextEdit, Ui, WidgetInfo};
 
 use crate::app::Workbench;
-use crate::text::shell as words;
+use crate::text::{document as document_words, shell as words};
 
 use super::actions::{Action, OTHER_REDO};
 use super::{theme, widgets};
@@ -46,6 +46,48 @@ pub fn ask_unsaved(ctx: &Context, title: &str) -> Option<UnsavedAnswer> {
     });
     if response.should_close() {
         answer = answer.or(Some(UnsavedAnswer::Cancel));
+    }
+    answer
+}
+
+/// What to do with a file that another program has changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ChangedAnswer {
+    /// Replace it.
+    SaveOver,
+    /// Write another file.
+    SaveAs,
+    /// Read it.
+    Reload,
+    /// Leave it.
+    Cancel,
+}
+
+/// Asks what is to become of a file that another program has changed, before it is saved.
+#[must_use]
+pub fn ask_changed(ctx: &Context, title: &str) -> Option<ChangedAnswer> {
+    let mut answer = None;
+    let response = modal(ctx, "changed on disk").show(ctx, |ui| {
+        question_heading(ui, &document_words::changed_title(title));
+        ui.label(theme::dim(ui, document_words::CHANGED_HINT));
+        ui.add_space(16.0);
+        ui.horizontal(|ui| {
+            if widgets::primary_button(ui, words::SAVE_AS).clicked() {
+                answer = Some(ChangedAnswer::SaveAs);
+            }
+            for (name, meaning) in [
+                (document_words::SAVE_OVER, ChangedAnswer::SaveOver),
+                (document_words::RELOAD, ChangedAnswer::Reload),
+                (words::CANCEL, ChangedAnswer::Cancel),
+            ] {
+                if ui.button(name).clicked() {
+                    answer = Some(meaning);
+                }
+            }
+        });
+    });
+    if response.should_close() {
+        answer = answer.or(Some(ChangedAnswer::Cancel));
     }
     answer
 }
@@ -182,6 +224,7 @@ pub fn help(ctx: &Context, workbench: &Workbench, open: &mut bool) {
                 Action::Quit,
                 Action::Undo,
                 Action::Redo,
+                Action::History,
                 Action::Help,
             ] {
                 if let Some(shortcut) = action.shortcut() {

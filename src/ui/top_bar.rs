@@ -4,6 +4,7 @@ use egui::{Align, Align2, Button, Layout, MenuBar, TextStyle, Ui, UiBuilder, con
 
 use crate::app::Workbench;
 use crate::session::samples;
+use crate::text::document::READ_ONLY;
 use crate::text::shell as words;
 use crate::text::start::sample_lesson;
 
@@ -52,6 +53,8 @@ fn menus(ui: &mut Ui, workbench: &Workbench, persisted: &mut Persisted, actions:
     MenuButton::new(words::EDIT).ui(ui, |ui| {
         item(ui, workbench, Action::Undo, actions);
         item(ui, workbench, Action::Redo, actions);
+        ui.separator();
+        item(ui, workbench, Action::History, actions);
     });
     MenuButton::new(words::VIEW).ui(ui, |ui| {
         ui.label(theme::dim(ui, words::THEME));
@@ -116,6 +119,9 @@ fn right_side(ui: &mut Ui, workbench: &Workbench, actions: &mut Vec<Action>) -> 
 fn title(ui: &Ui, workbench: &Workbench, full: egui::Rect, free: std::ops::Range<f32>) {
     let palette = theme::palette(ui);
     let (text, color, is_unsaved) = match workbench.document() {
+        Some(document) if document.is_read_only => {
+            (words::title_with(&document.title(), READ_ONLY), palette.text, document.is_unsaved())
+        }
         Some(document) => (document.title(), palette.text, document.is_unsaved()),
         None => (words::NO_TITLE.to_owned(), palette.text_dim, false),
     };
@@ -134,7 +140,13 @@ fn title(ui: &Ui, workbench: &Workbench, full: egui::Rect, free: std::ops::Range
     let center_x = full.center().x.clamp(free.start + 16.0 + half, free.end - 16.0 - half);
     let left_center = egui::pos2(center_x - half, full.center().y);
     let rect = Align2::LEFT_CENTER.anchor_size(left_center, galley.size());
+    let name = galley.text().to_owned();
     ui.painter().galley(rect.min, galley, color);
+    let response = ui.interact(rect, ui.scope_id().with("title"), egui::Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &name));
+    if let Some(path) = workbench.document().and_then(|document| document.path.as_deref()) {
+        response.on_hover_text(path.display().to_string());
+    }
     if is_unsaved {
         let dot = rect.right_center() + vec2(12.0, 0.0);
         ui.painter().circle_filled(dot, 5.0, palette.warn);

@@ -7,17 +7,22 @@ use std::path::PathBuf;
 use eframe::NativeOptions;
 use egui::{Context, Ui, ViewportBuilder};
 
-use crate::app::Command;
+use crate::app::{Command, RecoverySettings};
 use crate::text::shell as words;
 
 use super::persisted::Persisted;
 use super::shell::Shell;
+
+/// By this name the system knows the program; what it remembers is in a folder of that name.
+const APP_ID: &str = "handeye";
 
 /// How the window starts.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Start {
     /// A session file to open.
     pub file: Option<PathBuf>,
+    /// Where copies of unsaved work are kept for a run that ends badly; none are kept without.
+    pub recovery_folder: Option<PathBuf>,
 }
 
 /// Why there is no window; its `Display` is one line that says what to do.
@@ -59,6 +64,9 @@ impl Window {
         let persisted: Option<Persisted> =
             creation.storage.and_then(|storage| eframe::get_value(storage, Persisted::KEY));
         let mut shell = Shell::new(&creation.egui_ctx, persisted.unwrap_or_default());
+        if let Some(folder) = start.recovery_folder {
+            shell.workbench_mut().keep_copies(RecoverySettings::new(folder));
+        }
         if let Some(file) = start.file {
             shell.workbench_mut().apply(Command::Open(file));
         }
@@ -90,6 +98,10 @@ impl eframe::App for Window {
         eframe::set_value(storage, Persisted::KEY, self.shell.persisted());
     }
 
+    fn on_exit(&mut self, _gl: Option<&eframe::glow::Context>) {
+        self.shell.end();
+    }
+
     fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
         visuals.panel_fill.to_normalized_gamma_f32()
     }
@@ -99,14 +111,14 @@ impl eframe::App for Window {
 ///
 /// # Errors
 /// [`WindowError`] if there can be no window here.
-pub fn run(start: Start) -> Result<(), WindowError> {
+pub fn run(mut start: Start) -> Result<(), WindowError> {
     if !has_display() {
         return Err(WindowError::NoDisplay);
     }
     let options = NativeOptions {
         viewport: ViewportBuilder::default()
             .with_title(words::PROGRAM)
-            .with_app_id("handeye")
+            .with_app_id(APP_ID)
             .with_inner_size([1440.0, 900.0])
             .with_min_inner_size([960.0, 640.0])
             .with_drag_and_drop(true),
@@ -114,6 +126,8 @@ pub fn run(start: Start) -> Result<(), WindowError> {
         system_font_fallback: false,
         ..NativeOptions::default()
     };
+    start.recovery_folder =
+        start.recovery_folder.or_else(|| eframe::storage_dir(APP_ID).map(|folder| folder.join("recovery")));
     // A missing libxkbcommon-x11 makes the window system panic instead of failing: that panic is answered with
     // words, so its own message is kept from the terminal. Once the window stands, panics speak again.
     let hook = std::sync::Arc::new(std::sync::Mutex::new(Some(take_hook())));
@@ -129,7 +143,7 @@ pub fn run(start: Start) -> Result<(), WindowError> {
     let restore_once_open = restore_hook.clone();
     let outcome = catch_unwind(AssertUnwindSafe(|| {
         eframe::run_native(
-            "handeye",
+            APP_ID,
             options,
             Box::new(move |creation| {
                 restore_once_open();

@@ -62,8 +62,9 @@ impl Workbench {
     pub(super) fn touch(&mut self) {
         self.last_revision += 1;
         if let Some(document) = &mut self.document {
-            document.revision = self.last_revision;
+            document.note_changed(self.last_revision);
         }
+        self.keep_copy();
         self.start_solving();
     }
 }

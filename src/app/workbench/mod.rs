@@ -3,6 +3,7 @@
 mod edits;
 mod files;
 mod imports;
+mod keeping;
 mod studies;
 
 use std::collections::VecDeque;
@@ -13,14 +14,14 @@ use crate::calibrate::validation::Bootstrap;
 use crate::diagnose::{Diagnosis, ReadingFit};
 use crate::plan::{Limits, Plan, PlanRefusal};
 use crate::session::edit::CellValue;
-use crate::session::{Session, SessionError};
 use crate::watch::Cancelled;
 
 use super::jobs::{JobOutcome, Slot, Wake};
+use super::recovery::{Recoverable, Recovery};
 use super::study::Study;
 use super::{Command, Document};
 
-use self::files::{Loaded, Save};
+use self::files::{Loaded, Look, Save, SaveOutcome};
 pub use self::imports::ImportDraft;
 pub use self::studies::Results;
 
@@ -76,8 +77,13 @@ pub struct Workbench {
     loading: Slot<Loaded>,
     /// The revision on the bench when loading began.
     revision_before_loading: Option<u64>,
-    saving: Slot<(Save, Result<(), SessionError>)>,
+    saving: Slot<(Save, SaveOutcome)>,
     save_queue: VecDeque<Save>,
+    /// A save that met a file changed by another program; the user is to say what becomes of it.
+    conflict: Option<PathBuf>,
+    looking: Slot<Look>,
+    recovery: Option<Recovery>,
+    recoverable: Vec<Recoverable>,
     solving: Slot<Result<Results, Cancelled>>,
     diagnosis: Study<Diagnosis>,
     plan: Study<Result<Plan, PlanRefusal>>,
@@ -102,6 +108,10 @@ impl Workbench {
             saving: Slot::default(),
             revision_before_loading: None,
             save_queue: VecDeque::new(),
+            conflict: None,
+            looking: Slot::default(),
+            recovery: None,
+            recoverable: Vec::new(),
             solving: Slot::default(),
             diagnosis: Study::default(),
             plan: Study::default(),
@@ -212,6 +222,7 @@ impl Workbench {
     pub const fn is_busy(&self) -> bool {
         self.loading.is_running()
             || self.saving.is_running()
+            || self.looking.is_running()
             || self.solving.is_running()
             || self.diagnosis.is_running()
             || self.plan.is_running()
@@ -222,12 +233,15 @@ impl Workbench {
     /// Carries out one command.
     pub fn apply(&mut self, command: Command) {
         match command {
-            Command::Open(path) => self.start_loading(path),
+            Command::Open(path) => self.open_file(path),
             Command::OpenSample(sample_idx) => self.open_sample(sample_idx),
+            Command::NewSession(target) => self.begin_session(target),
             Command::CloseDocument => self.close_document(),
             Command::Save => self.save(),
             Command::SaveAs(path) => self.start_saving(path),
             Command::SaveAnyway => self.save_anyway(),
+            Command::GiveUpSaving => self.conflict = None,
+            Command::CheckFile => self.look_at_file(),
             Command::Reload => self.reload(),
             Command::Recover(idx) => self.recover(idx),
             Command::DiscardRecoverable(idx) => self.discard_recoverable(idx),
@@ -270,26 +284,17 @@ impl Workbench {
         // Saves first: a file that arrives in the same turn takes the saved document off the bench.
         if let Some(outcome) = self.saving.poll() {
             changed = true;
-            match outcome {
-                JobOutcome::Done((save, Ok(()))) => self.note_saved(save),
-                JobOutcome::Done((_, Err(error))) => self.notify(NoticeKind::Error, error.to_string()),
-                broken => self.notify_broken("saving", &broken),
-            }
-            if let Some(next) = self.save_queue.pop_front() {
-                self.run_save(next);
-            }
+            self.take_saved(outcome);
         }
         if let Some(outcome) = self.loading.poll() {
             changed = true;
-            match outcome {
-                JobOutcome::Done(Loaded { path, session: Ok(session) }) => self.take_loaded(session, path),
-                JobOutcome::Done(Loaded { session: Err(error), .. }) => self.notify_of_opening(error.to_string()),
-                broken => {
-                    self.notify_broken("reading the file", &broken);
-                    self.mark_newest_as_of_opening();
-                }
-            }
+            self.take_loaded(outcome);
         }
+        if let Some(outcome) = self.looking.poll() {
+            changed = true;
+            self.take_look(outcome);
+        }
+        changed |= self.take_news_of_recovery();
         if let Some(outcome) = self.solving.poll() {
             changed = true;
             match outcome {
@@ -311,15 +316,6 @@ impl Workbench {
             }
         }
         changed
-    }
-
-    /// Puts a session on the bench and solves it.
-    pub fn open_session(&mut self, session: Session, path: Option<PathBuf>) {
-        self.forget_errors();
-        self.last_revision += 1;
-        self.document = Some(Document::new(session, path, self.last_revision));
-        self.forget_results();
-        self.start_solving();
     }
 
     fn notify(&mut self, kind: NoticeKind, message: String) {

@@ -6,6 +6,7 @@
 mod cursor;
 mod names;
 mod save;
+mod stamp;
 mod tree;
 mod v1;
 mod write;
@@ -20,7 +21,9 @@ use self::cursor::{Cursor, Refusal};
 use self::tree::{Node, quoted};
 use super::{Session, SessionError};
 
-pub use save::save;
+pub use save::{is_read_only, save, save_over};
+pub(crate) use save::{replace_file, sweep};
+pub use stamp::{Stamp, unix_ms};
 pub use write::to_json;
 
 /// The newest version of the format, which is also the one that is written.
@@ -50,6 +53,14 @@ pub fn load(path: &Path) -> Result<Session, SessionError> {
 /// # Errors
 /// As for [`load`].
 pub fn load_with_notes(path: &Path) -> Result<Loaded, SessionError> {
+    load_with_stamp(path).map(|(loaded, _)| loaded)
+}
+
+/// As [`load_with_notes`], with a stamp of the file by which a later change of it is noticed.
+///
+/// # Errors
+/// As for [`load`].
+pub fn load_with_stamp(path: &Path) -> Result<(Loaded, Stamp), SessionError> {
     let file = file_name(path);
     let unreadable = |error: std::io::Error| SessionError::Unreadable {
         file: file.clone(),
@@ -67,7 +78,9 @@ pub fn load_with_notes(path: &Path) -> Result<Loaded, SessionError> {
         return Err(SessionError::TooLarge { file, found_bytes: metadata.len(), limit_bytes: MAX_BYTES });
     }
     let bytes = fs::read(path).map_err(unreadable)?;
-    parse_with_notes(&bytes, &file)
+    // The time is from before the reading: what is written to the file meanwhile counts as a change.
+    let stamp = Stamp::new(&bytes, metadata.modified().ok());
+    Ok((parse_with_notes(&bytes, &file)?, stamp))
 }
 
 /// Reads a session from the bytes of a file; `origin` names it in refusals.

@@ -6,6 +6,7 @@ pub mod cli;
 pub mod compare;
 pub mod diagnosis;
 pub mod diagnosis_panel;
+pub mod document;
 pub mod edits;
 pub mod methods;
 pub mod poses;

@@ -52,6 +52,12 @@ pub const NOTHING_TO_REDO: &str = "Nothing has been undone.";
 pub const NO_TITLE: &str = "no session";
 /// Name of the dot that marks unsaved changes.
 pub const UNSAVED: &str = "Unsaved changes";
+/// A title with what is special about it.
+#[must_use]
+pub fn title_with(title: &str, remark: &str) -> String {
+    format!("{title} ({remark})")
+}
+
 /// The units in use.
 pub const UNITS: &str = "mm · °";
 /// What the units chip says on hover.

@@ -75,12 +75,54 @@ pub fn open_sample(name: &str) -> String {
 
 /// Heading.
 pub const NOTES: &str = "Notes";
-/// No notes.
-pub const NO_NOTES: &str = "No notes.";
+/// Hint in the empty notes.
+pub const NOTES_HINT: &str = "What the next person should know about this session";
 /// Heading.
-pub const SETUP: &str = "Robot, sensor and target";
+pub const SETUP: &str = "Session, robot and sensor";
 /// Heading.
-pub const DATA: &str = "Data";
+pub const TARGET_AND_DATA: &str = "Target and data";
+/// Row.
+pub const NAME: &str = "name";
+/// A session without a name.
+pub const NO_NAME: &str = "no name";
+/// Row.
+pub const BALL_RADIUS: &str = "ball radius";
+/// Row.
+pub const BALL_RADIUS_STD: &str = "radius, 1σ";
+/// Hint in the empty field: nothing is stated.
+pub const EXACT: &str = "exact";
+/// Leads to the page where it is changed.
+pub const CHANGE_CONVENTION: &str = "change in Poses";
+/// What it leads to.
+pub const CHANGE_CONVENTION_HINT: &str =
+    "The convention says how the poses' numbers are read, so it is changed beside them";
+/// Kind of target.
+pub const BALL: &str = "ball";
+/// Kind of target.
+pub const PLATE: &str = "right-angle plate";
+/// Kind of target.
+pub const POINT: &str = "point";
+/// Before the targets to begin a session for.
+pub const NEW_SESSION: &str = "Or begin a new session, measured on";
+/// Before the field for a ball's radius.
+pub const OTHER_BALL: &str = "a ball of radius";
+/// Name of that field.
+pub const OTHER_BALL_NAME: &str = "Radius of the new session's ball, mm";
+/// Button.
+pub const BEGIN: &str = "Begin";
+
+/// A field's name with its unit.
+#[must_use]
+pub fn field_name(label: &str, unit: &str) -> String {
+    if unit.is_empty() { label.to_owned() } else { format!("{label}, {unit}") }
+}
+
+/// A target to begin a session for.
+#[must_use]
+pub fn preset(name: &str, is_ball: bool, radius_mm: f64) -> String {
+    if is_ball { format!("a {name}, {radius_mm} mm") } else { format!("a {name}") }
+}
+
 /// Row.
 pub const ROBOT: &str = "robot";
 /// Row.

@@ -2,20 +2,31 @@
 
 use std::sync::Arc;
 
-use egui::{Context, ViewportCommand};
+use egui::{Align, Context, Frame, Layout, Margin, Panel, Ui, ViewportCommand};
 
-use crate::app::{Command, Document, NoticeKind};
-use crate::text::shell as words;
-use crate::ui::dialogs::{self, SavePath, SavePathAnswer, UnsavedAnswer};
+use crate::app::{Command, Document, NoticeKind, OnDisk};
+use crate::text::{document as document_words, shell as words};
+use crate::ui::dialogs::{self, ChangedAnswer, SavePath, SavePathAnswer, UnsavedAnswer};
 use crate::ui::file_dialog::{Answer, Purpose};
 use crate::ui::rail::Step;
+use crate::ui::{theme, widgets};
 
 use super::{Pending, Shell};
+
+/// Seconds between two looks at the file while frames come.
+const LOOK_SECONDS: f64 = 5.0;
 
 impl Shell {
     /// Applies a command; one that puts another document on the bench asks first if changes would be lost.
     pub fn request(&mut self, command: Command) {
-        let replaces = matches!(command, Command::Open(_) | Command::OpenSample(_) | Command::CloseDocument);
+        let replaces = matches!(
+            command,
+            Command::Open(_)
+                | Command::OpenSample(_)
+                | Command::NewSession(_)
+                | Command::Recover(_)
+                | Command::CloseDocument
+        );
         if replaces && self.workbench.document().is_some_and(Document::is_unsaved) {
             self.unsaved_question = Some(Pending::Command(command));
             return;
@@ -41,6 +52,10 @@ impl Shell {
                 self.workbench.apply(Command::DismissNotice(id));
             }
             self.step = Step::Session;
+        }
+        if matches!(command, Command::NewSession(_)) {
+            // The next thing to do there: import, paste or add.
+            self.step = Step::Poses;
         }
         self.workbench.apply(command);
     }
@@ -95,7 +110,7 @@ impl Shell {
         if self.after_saving.is_none() || self.file_dialog.is_open() || self.save_path.is_some() {
             return;
         }
-        if self.workbench.is_saving() {
+        if self.workbench.is_saving() || self.workbench.conflict().is_some() {
             return;
         }
         let has_failed = (self.workbench.notices().last())
@@ -114,7 +129,12 @@ impl Shell {
         if !ctx.input(|input| input.viewport().close_requested()) {
             return;
         }
-        if self.workbench.is_saving() {
+        if ctx.memory(|memory| memory.focused().is_some()) {
+            // A field hands in what was typed, then the window asks again.
+            ctx.send_viewport_cmd(ViewportCommand::CancelClose);
+            super::take_what_is_typed(ctx);
+            self.is_closing_again = true;
+        } else if self.workbench.is_saving() {
             // The file is on its way: the window closes when it has arrived, and stays if it cannot.
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             self.is_quitting = false;
@@ -122,6 +142,13 @@ impl Shell {
         } else if self.workbench.document().is_some_and(Document::is_unsaved) && !self.is_quitting {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             self.unsaved_question = Some(Pending::Quit);
+        }
+    }
+
+    /// The window closes: what is unsaved by now was given up, unless nobody was asked.
+    pub fn end(&mut self) {
+        if self.is_quitting || !self.workbench.document().is_some_and(Document::is_unsaved) {
+            self.workbench.end();
         }
     }
 
@@ -134,6 +161,7 @@ impl Shell {
                 SavePathAnswer::Cancel => self.after_saving = None,
             }
         }
+        self.question_of_changed_file(ctx);
         let Some(document) = self.workbench.document().filter(|_| self.unsaved_question.is_some()) else {
             self.unsaved_question = None;
             return;
@@ -148,5 +176,79 @@ impl Shell {
             UnsavedAnswer::Discard => self.carry_out(ctx, pending),
             UnsavedAnswer::Cancel => {}
         }
+    }
+
+    fn question_of_changed_file(&mut self, ctx: &Context) {
+        let Some(document) = self.workbench.document().filter(|_| self.workbench.conflict().is_some()) else { return };
+        // The path that "Save as…" asks for stands above the question.
+        if self.save_path.is_some() || self.file_dialog.is_open() {
+            return;
+        }
+        let Some(answer) = dialogs::ask_changed(ctx, &document.title()) else { return };
+        match answer {
+            ChangedAnswer::SaveOver => self.workbench.apply(Command::SaveAnyway),
+            ChangedAnswer::SaveAs => {
+                self.workbench.apply(Command::GiveUpSaving);
+                self.save_as();
+            }
+            ChangedAnswer::Reload => {
+                self.after_saving = None;
+                self.workbench.apply(Command::GiveUpSaving);
+                self.workbench.apply(Command::Reload);
+            }
+            ChangedAnswer::Cancel => {
+                self.after_saving = None;
+                self.workbench.apply(Command::GiveUpSaving);
+            }
+        }
+    }
+
+    /// Looks at the file when the user comes back from another program, and now and then while they work: frames come
+    /// only when something happens, so an idle window stays idle.
+    pub(super) fn look_at_file(&mut self, ctx: &Context) {
+        let (now, has_focus) = ctx.input(|input| (input.time, input.focused));
+        let has_come_back = has_focus && !std::mem::replace(&mut self.had_focus, has_focus);
+        if has_come_back {
+            self.start.look_again();
+        }
+        if has_come_back || now - self.last_look > LOOK_SECONDS {
+            self.last_look = now;
+            self.workbench.apply(Command::CheckFile);
+        }
+    }
+
+    /// The strip that says that the file is another than the one opened.
+    pub(super) fn strip_of_file(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        let Some(document) = self.workbench.document() else { return };
+        let state = (document.id(), document.on_disk);
+        if document.on_disk == OnDisk::Same {
+            self.dismissed_on_disk = None;
+            return;
+        }
+        if self.dismissed_on_disk == Some(state) {
+            return;
+        }
+        let sentence = match document.on_disk {
+            OnDisk::Gone => document_words::gone_strip(&document.title()),
+            _ => document_words::changed_strip(&document.title()),
+        };
+        let palette = theme::palette(ui);
+        let frame = Frame::new().fill(palette.surface).inner_margin(Margin::symmetric(16, 4));
+        Panel::bottom("file on disk").resizable(false).frame(frame).show(ui, |ui| {
+            ui.horizontal(|ui| {
+                ui.label(theme::strong("!").color(palette.warn));
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    if widgets::symbol_button(ui, "×", words::DISMISS).clicked() {
+                        self.dismissed_on_disk = Some(state);
+                    }
+                    if state.1 == OnDisk::Changed && ui.button(document_words::RELOAD).clicked() {
+                        commands.push(Command::Reload);
+                    }
+                    ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                        ui.add(egui::Label::new(sentence).wrap());
+                    });
+                });
+            });
+        });
     }
 }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use egui::{CentralPanel, Context, Frame, Margin, Panel, Stroke, Ui, ViewportCommand};
 
 use crate::app::jobs::Wake;
-use crate::app::{Command, Workbench};
+use crate::app::{Command, OnDisk, Workbench};
 use crate::text::shell as words;
 
 use super::actions::{self, Action};
@@ -17,6 +17,7 @@ use super::compare::CompareState;
 use super::diagnosis::DiagnosisState;
 use super::dialogs::SavePath;
 use super::file_dialog::{FileDialog, Purpose};
+use super::history::HistoryWindow;
 use super::persisted::Persisted;
 use super::poses::panel::PosesState;
 use super::rail::{self, Step};
@@ -56,10 +57,16 @@ pub struct Shell {
     file_dialog: FileDialog,
     save_path: Option<SavePath>,
     is_help_open: bool,
+    history: HistoryWindow,
+    /// The state of the file on disk whose strip was dismissed.
+    dismissed_on_disk: Option<(u64, OnDisk)>,
+    last_look: f64,
+    had_focus: bool,
+    is_closing_again: bool,
     unsaved_question: Option<Pending>,
     after_saving: Option<Pending>,
     is_quitting: bool,
-    seen_revision: u64,
+    seen_document: u64,
     seen_results: u64,
     done_notice: Option<(u64, f64)>,
     window_title: String,
@@ -92,10 +99,15 @@ impl Shell {
             file_dialog: FileDialog::default(),
             save_path: None,
             is_help_open: false,
+            history: HistoryWindow::default(),
+            dismissed_on_disk: None,
+            last_look: 0.0,
+            had_focus: true,
+            is_closing_again: false,
             unsaved_question: None,
             after_saving: None,
             is_quitting: false,
-            seen_revision: 0,
+            seen_document: 0,
             seen_results: 0,
             done_notice: None,
             window_title: String::new(),
@@ -143,6 +155,8 @@ impl Shell {
             ctx.request_repaint();
         }
         self.start.poll();
+        self.start.look_for_files(&self.persisted.recent_files, &self.wake);
+        self.look_at_file(ctx);
         self.notice_new_document(ctx);
         self.notice_new_results();
         self.take_dialog_answer();
@@ -156,15 +170,26 @@ impl Shell {
         let ctx = ui.ctx().clone();
         let mut actions = actions::pressed(&ctx, &self.workbench);
         let mut commands = Vec::new();
+        if actions.iter().any(|action| action.takes_what_is_typed()) {
+            take_what_is_typed(&ctx);
+        }
         Self::open_dropped_files(&ctx, &mut commands);
         self.bars(ui, &mut actions, &mut commands);
         self.center(ui, &mut actions, &mut commands);
+        self.history.show(&ctx, &self.workbench, &mut commands);
         self.questions(&ctx);
+        // What was typed comes first: an action in the same frame is about it.
+        for command in std::mem::take(&mut commands) {
+            self.request(command);
+        }
         for action in actions {
             self.perform(&ctx, action, &mut commands);
         }
         for command in commands {
             self.request(command);
+        }
+        if std::mem::take(&mut self.is_closing_again) {
+            ctx.send_viewport_cmd(ViewportCommand::Close);
         }
         self.apply_looks(&ctx);
     }
@@ -185,6 +210,7 @@ impl Shell {
                 status::notices(ui, &self.workbench, self.step, commands);
             });
         }
+        self.strip_of_file(ui, commands);
         Panel::left("rail").resizable(false).exact_size(RAIL_WIDTH).frame(surface).show(ui, |ui| {
             rail::show(ui, &self.workbench, &self.selection, self.step, actions);
         });
@@ -209,7 +235,7 @@ impl Shell {
                 PanelContext { workbench: &self.workbench, selection: &mut self.selection, commands, actions };
             match self.step {
                 Step::Session => {
-                    start::panel::show(ui, &mut context, &mut self.start, &self.persisted.recent_files);
+                    start::panel::show(ui, &mut context, &mut self.start, &mut self.persisted.recent_files);
                 }
                 Step::Poses => poses::panel::show(ui, &mut context, &mut self.poses),
                 Step::Arcs => arcs::show(ui, &mut context, &mut self.arcs),
@@ -241,6 +267,7 @@ impl Shell {
             Action::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
             Action::Undo => commands.push(Command::Undo),
             Action::Redo => commands.push(Command::Redo),
+            Action::History => self.history.is_open = !self.history.is_open,
             Action::Help => self.is_help_open = !self.is_help_open,
             Action::GoTo(step) => self.step = step,
         }
@@ -258,6 +285,15 @@ impl Shell {
             self.applied_scale = self.persisted.scale;
         }
     }
+}
+
+/// Takes the focus from what has it: a field hands in what was typed.
+fn take_what_is_typed(ctx: &Context) {
+    ctx.memory_mut(|memory| {
+        if let Some(id) = memory.focused() {
+            memory.surrender_focus(id);
+        }
+    });
 }
 
 fn empty_state(ui: &mut Ui, actions: &mut Vec<Action>) {

@@ -6,6 +6,7 @@ use egui::{Context, ViewportCommand};
 
 use crate::app::{Command, NoticeKind};
 use crate::calibrate::Method;
+use crate::text::document::READ_ONLY;
 use crate::text::shell as words;
 use crate::ui::Selection;
 use crate::ui::arcs::ArcsState;
@@ -21,22 +22,19 @@ const DONE_NOTICE_SECONDS: f64 = 6.0;
 impl Shell {
     pub(super) fn notice_new_document(&mut self, ctx: &Context) {
         let Some(document) = self.workbench.document() else {
-            self.seen_revision = 0;
+            self.seen_document = 0;
             self.set_title(ctx, words::PROGRAM.to_owned());
             return;
         };
-        let history = &document.history;
-        let is_new = history.undo_label().is_none() && history.redo_label().is_none();
-        if document.revision != self.seen_revision {
-            self.seen_revision = document.revision;
-            if is_new {
-                self.selection = Selection { method: self.selection.method, ..Selection::default() };
-                self.poses = PosesState::default();
-                self.arcs = ArcsState::default();
-                self.compare = CompareState::default();
-                self.diagnosis = DiagnosisState::default();
-                self.seen_results = 0;
-            }
+        if document.id() != self.seen_document {
+            self.seen_document = document.id();
+            self.selection = Selection { method: self.selection.method, ..Selection::default() };
+            self.poses = PosesState::default();
+            self.arcs = ArcsState::default();
+            self.compare = CompareState::default();
+            self.diagnosis = DiagnosisState::default();
+            self.start.forget_typing();
+            self.seen_results = 0;
         }
         if let Some(path) = &document.path
             && self.persisted.recent_files.first() != Some(path)
@@ -44,7 +42,11 @@ impl Shell {
             self.persisted.note_recent(path);
         }
         let dot = if document.is_unsaved() { " ●" } else { "" };
-        let title = format!("{}{dot} – {}", document.title(), words::PROGRAM);
+        let mut name = document.title();
+        if document.is_read_only {
+            name = words::title_with(&name, READ_ONLY);
+        }
+        let title = format!("{name}{dot} – {}", words::PROGRAM);
         self.set_title(ctx, title);
     }
 

@@ -1,79 +1,98 @@
-//! What the open session holds, at a glance.
+//! What the open session is, edited in place, and what it holds, at a glance.
 
-use egui::{Frame, Ui, UiBuilder, vec2};
+use std::path::Path;
+
+use egui::{Frame, Label, Margin, RichText, Ui, UiBuilder, vec2};
 
 use crate::app::Document;
-use crate::session::{Reading, Session};
+use crate::session::Reading;
 use crate::text::start as words;
-use crate::ui::theme;
-use crate::ui::widgets::{card_with_height, fixed, value_row};
+use crate::ui::actions::Action;
+use crate::ui::rail::Step;
+use crate::ui::widgets::{card, split_row, value_row};
+use crate::ui::{PanelContext, theme};
 
-/// Height of the cards, points: a header and eight rows.
-const HEIGHT: f32 = 32.0 + 8.0 * (theme::ROW_HEIGHT + 4.0) + 16.0;
+use super::form::{FormState, has_ball, mount_row, target_row};
+use super::form_model::Field;
 
-/// Draws the overview: two cards of figures, and the notes below.
-pub fn show(ui: &mut Ui, document: &Document) {
-    let session = &document.session;
-    ui.add_space(4.0);
-    ui.label(theme::heading(&session.name));
-    ui.add_space(8.0);
+/// Draws the overview: two cards of fields and figures, and the notes below.
+pub fn show(ui: &mut Ui, document: &Document, context: &mut PanelContext<'_>, form: &mut FormState) {
     let width = (ui.available_width() - theme::GAP) / 2.0;
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.x = theme::GAP;
-        column(ui, width, words::SETUP, &setup(session));
-        column(ui, width, words::DATA, &data(document));
+        column(ui, width, words::SETUP, |ui| setup(ui, document, context, form));
+        column(ui, width, words::TARGET_AND_DATA, |ui| target_and_data(ui, document, context, form));
     });
     ui.add_space(theme::GAP);
-    crate::ui::widgets::card(
+    card(
         ui,
         words::NOTES,
         |_| {},
         |ui| {
             Frame::new().inner_margin(12).show(ui, |ui| {
-                ui.set_width(ui.available_width());
-                if session.notes.is_empty() {
-                    ui.label(theme::dim(ui, words::NO_NOTES));
-                } else {
-                    ui.label(&session.notes);
-                }
+                form.text_field(ui, document, Field::Notes, f32::INFINITY, context.commands);
             });
         },
     );
 }
 
-fn column(ui: &mut Ui, width: f32, title: &str, rows: &[(&str, String)]) {
-    let (rect, _) = ui.allocate_exact_size(vec2(width, HEIGHT), egui::Sense::hover());
-    let mut ui = ui.new_child(UiBuilder::new().max_rect(rect));
-    card_with_height(
-        &mut ui,
+/// A card of rows; the two are as high as the higher one, so that their lower borders line up.
+fn column(ui: &mut Ui, width: f32, title: &str, rows: impl FnOnce(&mut Ui)) {
+    let top = ui.available_rect_before_wrap().min;
+    let place = egui::Rect::from_min_size(top, vec2(width, 0.0));
+    let mut inside = ui.new_child(UiBuilder::new().max_rect(place).layout(egui::Layout::top_down(egui::Align::Min)));
+    card(
+        &mut inside,
         title,
-        HEIGHT,
         |_| {},
         |ui| {
-            Frame::new().inner_margin(egui::Margin::symmetric(12, 4)).show(ui, |ui| {
-                for (label, value) in rows {
-                    value_row(ui, label, value);
-                }
+            Frame::new().inner_margin(Margin::symmetric(12, 4)).show(ui, |ui| {
+                ui.set_min_height(9.0 * (theme::ROW_HEIGHT + 4.0));
+                rows(ui);
             });
         },
     );
+    let used = inside.min_rect();
+    ui.advance_cursor_after_rect(used);
 }
 
-fn setup(session: &Session) -> Vec<(&'static str, String)> {
-    let stated = |value: Option<f64>, decimals: usize, unit: &str| {
-        value.map_or_else(|| words::NOT_STATED.to_owned(), |value| format!("{} {unit}", fixed(value, decimals)))
-    };
-    let or_not_stated = |text: &str| if text.is_empty() { words::NOT_STATED.to_owned() } else { text.to_owned() };
-    vec![
-        (words::ROBOT, or_not_stated(&session.robot.model)),
-        (words::CONVENTION, session.robot.notation.convention.label.to_owned()),
-        (words::POSITION_STD, stated(session.robot.position_std_mm, 3, "mm")),
-        (words::ORIENTATION_STD, stated(session.robot.orientation_std_deg, 4, "°")),
-        (words::SENSOR, or_not_stated(&session.sensor.model)),
-        (words::PROFILE_STD, stated(session.sensor.profile_std_mm, 4, "mm")),
-        (words::REFERENCE_DISTANCE, stated(session.sensor.reference_distance_mm, 1, "mm")),
-        (words::MOUNT, words::mount(session.mount).to_owned()),
-    ]
+fn setup(ui: &mut Ui, document: &Document, context: &mut PanelContext<'_>, form: &mut FormState) {
+    for field in [Field::Name, Field::RobotModel] {
+        form.row(ui, document, field, context.commands);
+    }
+    split_row(ui, words::CONVENTION, |ui| {
+        if ui.link(words::CHANGE_CONVENTION).on_hover_text(words::CHANGE_CONVENTION_HINT).clicked() {
+            context.actions.push(Action::GoTo(Step::Poses));
+        }
+        ui.label(document.session.robot.notation.convention.label);
+    });
+    for field in
+        [Field::PositionStd, Field::OrientationStd, Field::SensorModel, Field::ProfileStd, Field::ReferenceDistance]
+    {
+        form.row(ui, document, field, context.commands);
+    }
+    mount_row(ui, document, context.commands);
+}
+
+fn target_and_data(ui: &mut Ui, document: &Document, context: &mut PanelContext<'_>, form: &mut FormState) {
+    target_row(ui, document, context.commands);
+    if has_ball(&document.session.target) {
+        for field in [Field::BallRadius, Field::BallRadiusStd] {
+            form.row(ui, document, field, context.commands);
+        }
+    }
+    for (label, value) in data(document) {
+        value_row(ui, label, value);
+    }
+    let path = document.path.as_deref();
+    split_row(ui, words::FILE, |ui| {
+        let name = path.and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());
+        let text = RichText::new(name.unwrap_or_else(|| words::NOT_SAVED.to_owned()));
+        let response = ui.add(Label::new(text).truncate());
+        if let Some(path) = path {
+            response.on_hover_text(path.display().to_string());
+        }
+    });
 }
 
 fn data(document: &Document) -> Vec<(&'static str, String)> {
@@ -81,13 +100,10 @@ fn data(document: &Document) -> Vec<(&'static str, String)> {
     let num_enabled = session.stations.iter().filter(|station| station.enabled).count();
     let captures = session.stations.iter().flat_map(|station| &station.captures);
     let num_points = captures.filter(|capture| matches!(capture.reading, Reading::Point(_))).count();
-    let file = document.path.as_deref().and_then(std::path::Path::file_name);
     vec![
-        (words::TARGET, words::target(&session.target)),
         (words::STATIONS, words::stations_in_use(num_enabled, session.stations.len())),
         (words::CAPTURES, words::captures(session.num_captures() - num_points, num_points)),
         (words::TRUTH, if session.truth.is_some() { words::KNOWN } else { words::NOT_KNOWN }.to_owned()),
         (words::PUBLISHED, session.published.as_ref().map_or(words::NONE, |_| words::YES).to_owned()),
-        (words::FILE, file.map_or_else(|| words::NOT_SAVED.to_owned(), |name| name.to_string_lossy().into_owned())),
     ]
 }

@@ -10,13 +10,16 @@ use egui::{
 use crate::app::Command;
 use crate::app::jobs::{JobOutcome, Slot, Wake};
 use crate::session::samples;
+use crate::text::document as document_words;
 use crate::text::shell as shell_words;
 use crate::text::start as words;
 use crate::ui::actions::Action;
 use crate::ui::widgets::{card, primary_button, symbol_button};
 use crate::ui::{PanelContext, theme};
 
+use super::form::FormState;
 use super::model::{SamplePreview, preview_samples};
+use super::offers::{self, OffersState};
 use super::{overview, paint};
 
 /// Width that a sample's card is at least given, points.
@@ -36,6 +39,13 @@ pub struct StartState {
     hint: Option<&'static str>,
     reading: Slot<Vec<Option<SamplePreview>>>,
     previews: Vec<Option<SamplePreview>>,
+    looking: Slot<Vec<bool>>,
+    /// The recent files that were looked for last.
+    looked_for: Vec<PathBuf>,
+    /// Whether each of them is there; empty until that is known.
+    are_there: Vec<bool>,
+    form: FormState,
+    offers: OffersState,
 }
 
 impl StartState {
@@ -49,6 +59,29 @@ impl StartState {
         if let Some(JobOutcome::Done(previews)) = self.reading.poll() {
             self.previews = previews;
         }
+        if let Some(JobOutcome::Done(are_there)) = self.looking.poll() {
+            self.are_there = are_there;
+        }
+    }
+
+    /// Looks in the background which of the recent files are there: a folder on a network may take its time.
+    pub fn look_for_files(&mut self, recent_files: &[PathBuf], wake: &Wake) {
+        if self.looked_for != recent_files {
+            self.looked_for = recent_files.to_vec();
+            self.are_there.clear();
+            let paths = recent_files.to_vec();
+            self.looking.start("look for files", wake, move |_| paths.iter().map(|path| path.exists()).collect());
+        }
+    }
+
+    /// Files may have come or gone.
+    pub fn look_again(&mut self) {
+        self.looked_for.clear();
+    }
+
+    /// Another document is on the bench.
+    pub fn forget_typing(&mut self) {
+        self.form = FormState::default();
     }
 
     /// Whether samples are still being read.
@@ -65,12 +98,13 @@ impl StartState {
 }
 
 /// Draws the step: the start page, or the overview of the open session beside the ways to open another.
-pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut StartState, recent_files: &[PathBuf]) {
+pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut StartState, recent_files: &mut Vec<PathBuf>) {
     // Room for the scroll bar beside the cards, not over them.
     ui.spacing_mut().scroll.floating_allocated_width = 8.0;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         if let Some(document) = context.workbench.document() {
-            overview::show(ui, document);
+            offers::recovery(ui, context, &mut state.offers);
+            overview::show(ui, document, context, &mut state.form);
             ui.add_space(theme::GAP);
             open_card(ui, words::OPEN_ANOTHER, context, state, recent_files);
             ui.add_space(20.0);
@@ -84,6 +118,7 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut StartState,
                 ui.add_space(4.0);
                 ui.label(theme::dim(ui, words::LEAD));
                 ui.add_space(16.0);
+                offers::recovery(ui, context, &mut state.offers);
                 open_card(ui, words::OPEN_FILE, context, state, recent_files);
                 ui.add_space(20.0);
                 ui.label(theme::strong(words::SAMPLES));
@@ -99,7 +134,7 @@ fn open_card(
     title: &str,
     context: &mut PanelContext<'_>,
     state: &mut StartState,
-    recent_files: &[PathBuf],
+    recent_files: &mut Vec<PathBuf>,
 ) {
     card(
         ui,
@@ -113,7 +148,8 @@ fn open_card(
                 }
                 errors(ui, context);
                 ui.label(theme::dim(ui, words::DROP_HINT).small());
-                recent(ui, context, recent_files);
+                recent(ui, context, state, recent_files);
+                offers::new_session(ui, context, &mut state.offers);
             });
         },
     );
@@ -171,16 +207,30 @@ fn errors(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
 }
 
-fn recent(ui: &mut Ui, context: &mut PanelContext<'_>, recent_files: &[PathBuf]) {
+fn recent(ui: &mut Ui, context: &mut PanelContext<'_>, state: &StartState, recent_files: &mut Vec<PathBuf>) {
     if recent_files.is_empty() {
         return;
     }
     ui.add_space(8.0);
     ui.label(theme::dim(ui, words::RECENT));
-    for path in recent_files {
-        if ui.link(path.display().to_string()).clicked() {
-            context.commands.push(Command::Open(path.clone()));
-        }
+    let mut removed = None;
+    for (idx, path) in recent_files.iter().enumerate() {
+        let name = path.display().to_string();
+        let is_missing = state.looked_for.get(idx) == Some(path) && state.are_there.get(idx) == Some(&false);
+        ui.horizontal(|ui| {
+            if symbol_button(ui, "×", &document_words::remove_recent(&name)).clicked() {
+                removed = Some(idx);
+            }
+            if is_missing {
+                ui.label(theme::dim(ui, document_words::MISSING).small());
+                ui.label(theme::dim(ui, name));
+            } else if ui.link(name).clicked() {
+                context.commands.push(Command::Open(path.clone()));
+            }
+        });
+    }
+    if let Some(idx) = removed {
+        recent_files.remove(idx);
     }
 }
 
