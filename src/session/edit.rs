@@ -109,6 +109,8 @@ pub enum Edit {
     SwitchNotation(PoseNotation),
     /// The same numbers, read in another way: other poses.
     Reinterpret(PoseNotation),
+    /// Several, each on what the one before made of the session.
+    Several(Vec<Edit>),
 }
 
 /// Why an edit cannot be made; the session stays as it was.
@@ -168,17 +170,25 @@ impl Edit {
     /// [`EditRefusal`] if it cannot be made as a whole; nothing of it is made then.
     pub fn apply(&self, session: &Session) -> Result<Session, EditRefusal> {
         let mut changed = session.clone();
-        match self {
-            Self::SetCells(cells) => set_cells(&mut changed, cells)?,
-            Self::InsertStations { at, stations } => insert(&mut changed, *at, stations)?,
-            Self::Duplicate(rows) => duplicate(&mut changed, rows)?,
-            Self::Remove(rows) => remove(&mut changed, rows)?,
-            Self::Reorder(order) => reorder(&mut changed, order)?,
-            Self::Setup(field) => set_field(&mut changed, field)?,
-            Self::SwitchNotation(notation) => changed.robot.notation = *notation,
-            Self::Reinterpret(notation) => reinterpret(&mut changed, notation)?,
-        }
+        self.make(&mut changed)?;
         Ok(changed)
+    }
+
+    fn make(&self, session: &mut Session) -> Result<(), EditRefusal> {
+        match self {
+            Self::SetCells(cells) => set_cells(session, cells),
+            Self::InsertStations { at, stations } => insert(session, *at, stations),
+            Self::Duplicate(rows) => duplicate(session, rows),
+            Self::Remove(rows) => remove(session, rows),
+            Self::Reorder(order) => reorder(session, order),
+            Self::Setup(field) => set_field(session, field),
+            Self::SwitchNotation(notation) => {
+                session.robot.notation = *notation;
+                Ok(())
+            }
+            Self::Reinterpret(notation) => reinterpret(session, notation),
+            Self::Several(edits) => edits.iter().try_for_each(|edit| edit.make(session)),
+        }
     }
 }
 

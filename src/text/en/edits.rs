@@ -17,6 +17,7 @@ pub fn edit_label(edit: &Edit, session: &Session) -> String {
         Edit::Setup(field) => format!("change {}", field_name(field)),
         Edit::SwitchNotation(notation) => format!("show poses as {}", notation.convention.label),
         Edit::Reinterpret(notation) => format!("read the same numbers as {}", notation.convention.label),
+        Edit::Several(edits) => edits.iter().map(|edit| edit_label(edit, session)).collect::<Vec<_>>().join(", "),
     }
 }
 
