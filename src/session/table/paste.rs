@@ -33,6 +33,8 @@ pub struct Pasted {
     pub edit: Option<Edit>,
     /// Texts that cannot be read, by the label that their station will have.
     pub refused: Vec<(String, RefusedCell)>,
+    /// Cells of stations that are there already.
+    pub overwritten: Vec<(Place, Column)>,
     /// Labels of stations that were added but take no part until they are complete.
     pub held_back: Vec<String>,
     /// Rows and columns of the block.
@@ -77,6 +79,8 @@ pub fn paste(session: &Session, spot: &Spot<'_>, block: &[Vec<String>]) -> Paste
             typed.extend(missing_numbers(&extended, row.place(), &columns, texts));
         }
     }
+    let is_there = |cell: &&TypedCell| cell.place.station_idx < num_stations;
+    pasted.overwritten = typed.iter().filter(is_there).map(|cell| (cell.place, cell.column)).collect();
     let read = read_cells(&extended, &typed);
     let (added_values, values): (Vec<_>, Vec<_>) =
         read.values.into_iter().partition(|(place, _)| place.station_idx >= num_stations);
