@@ -216,3 +216,6 @@ pub const fn choices(column: Column) -> &'static [&'static str] {
         Column::Used | Column::Label | Column::Number(_) | Column::Step | Column::Point(_) => &[],
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -245,15 +245,11 @@ impl Grid<'_> {
                 (Some(waiting), _) => waiting.text.clone(),
                 (None, Column::Used) => {
                     if is_own && checkbox(ui, rect, station.enabled, &station.label) {
-                        let is_in_selection = sheet.cursor.has_row(row_idx);
-                        if !is_in_selection || sheet.cursor.row != row_idx {
-                            let column = sheet.cursor.column;
-                            if !is_in_selection {
-                                sheet.cursor = super::cursor::Cursor::at(row_idx, column);
-                            }
+                        if !sheet.cursor.has_row(row_idx) {
+                            sheet.cursor = super::cursor::Cursor::at(row_idx, column_idx);
                         }
-                        sheet.commit(commands);
                         sheet.use_rows(session, !station.enabled, commands);
+                        sheet.takes_keyboard = true;
                     }
                     continue;
                 }
@@ -429,6 +425,7 @@ impl Grid<'_> {
             }
             if answer == ChoiceAnswer::Taken {
                 sheet.choose(commands);
+                sheet.takes_keyboard = true;
             }
         }
     }
@@ -498,6 +495,7 @@ impl Grid<'_> {
         if let Some(column) = clicked {
             sheet.commit(commands);
             sheet.sort(session, column, commands);
+            sheet.takes_keyboard = true;
         }
     }
 }

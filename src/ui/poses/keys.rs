@@ -104,7 +104,12 @@ fn handle_one(
 ) -> bool {
     let session = &document.session;
     match event {
-        Event::Text(text) if text == " " => sheet.toggle(document, commands),
+        // With shift the blank selects the row; that comes as a key as well.
+        Event::Text(text) if text == " " => {
+            if !ctx.input(|input| input.modifiers.shift) {
+                sheet.toggle(document, commands);
+            }
+        }
         Event::Text(text) if text.chars().all(|letter| !letter.is_control()) => {
             sheet.choice = None;
             sheet.edit(document, Some(text), commands);
@@ -160,7 +165,7 @@ fn handle_key(
         Key::ArrowRight => sheet.step(0, far(1, last_column), shift),
         Key::PageUp => sheet.step(-PAGE, 0, shift),
         Key::PageDown => sheet.step(PAGE, 0, shift),
-        Key::Home => sheet.step(far(0, 0) - if command { last_row } else { 0 }, -last_column, shift),
+        Key::Home => sheet.step(if command { -last_row } else { 0 }, -last_column, shift),
         Key::End => sheet.step(if command { last_row } else { 0 }, last_column, shift),
         Key::Enter if modifiers.is_none() => sheet.edit(document, None, commands),
         Key::Enter if shift => sheet.step(-1, 0, false),

@@ -60,7 +60,7 @@ fn show_table(ui: &mut Ui, context: &mut PanelContext<'_>, document: &Document, 
             ui.allocate_ui_with_layout(vec2(width, TOOLBAR_HEIGHT), Layout::left_to_right(Align::Center), |ui| {
                 ui.set_min_size(vec2(width, TOOLBAR_HEIGHT));
                 ui.add_space(8.0);
-                toolbar::show(ui, sheet, document, context.commands);
+                sheet.takes_keyboard |= toolbar::show(ui, sheet, document, context.commands);
             });
             let area = ui.available_rect_before_wrap();
             let (table, line) = area.split_top_bottom_at_y(area.bottom() - LINE_HEIGHT);
@@ -71,7 +71,9 @@ fn show_table(ui: &mut Ui, context: &mut PanelContext<'_>, document: &Document, 
             ui.advance_cursor_after_rect(area);
         },
     );
-    if keyboard.end_editor(sheet, context.commands) {
+    sheet.takes_keyboard |= keyboard.end_editor(sheet, context.commands);
+    // Last of all, as a click anywhere but on the grid itself takes the keyboard away from it.
+    if std::mem::take(&mut sheet.takes_keyboard) {
         ui.memory_mut(|memory| memory.request_focus(id));
         ui.ctx().request_repaint();
     }

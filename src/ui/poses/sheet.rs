@@ -36,6 +36,8 @@ pub struct Sheet {
     pub said: Option<String>,
     /// Whether the cursor is to be brought into view.
     pub brings_into_view: bool,
+    /// Whether the keyboard goes to the table at the end of the frame.
+    pub takes_keyboard: bool,
     /// Stations to be selected once the document has them.
     selects: Option<RangeInclusive<usize>>,
     num_editors: u64,

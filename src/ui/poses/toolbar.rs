@@ -1,5 +1,7 @@
 //! The buttons above the table, with their shortcuts.
 
+use std::cell::Cell;
+
 use egui::{Button, RichText, Role, Ui, WidgetInfo, vec2};
 
 use crate::app::{Command, Document};
@@ -8,18 +10,21 @@ use crate::ui::theme;
 
 use super::sheet::Sheet;
 
-/// Draws the buttons in a row.
-pub fn show(ui: &mut Ui, sheet: &mut Sheet, document: &Document, commands: &mut Vec<Command>) {
+/// Draws the buttons in a row. Answers whether one of them was used.
+pub fn show(ui: &mut Ui, sheet: &mut Sheet, document: &Document, commands: &mut Vec<Command>) -> bool {
     let session = &document.session;
     let has_rows = !sheet.view.rows.is_empty();
     ui.spacing_mut().item_spacing.x = 4.0;
     ui.spacing_mut().interact_size.y = theme::ROW_HEIGHT;
     ui.spacing_mut().button_padding = vec2(8.0, 2.0);
+    let is_used = Cell::new(false);
     let button = |ui: &mut Ui, label: &str, hint: &str, is_enabled: bool| {
         let button = Button::new(RichText::new(label).small()).min_size(vec2(theme::ROW_HEIGHT, theme::ROW_HEIGHT));
         let response = ui.add_enabled(is_enabled, button);
         response.widget_info(|| WidgetInfo::labeled(Role::Button, is_enabled, hint.split(" (").next().unwrap_or(hint)));
-        response.on_hover_text(hint).on_disabled_hover_text(hint).clicked()
+        let is_clicked = response.on_hover_text(hint).on_disabled_hover_text(hint).clicked();
+        is_used.set(is_used.get() || is_clicked);
+        is_clicked
     };
     if button(ui, words::ADD, words::ADD_HINT, true) {
         sheet.commit(commands);
@@ -62,4 +67,5 @@ pub fn show(ui: &mut Ui, sheet: &mut Sheet, document: &Document, commands: &mut 
             sheet.cursor.clamp(sheet.view.rows.len(), sheet.view.columns.len());
         }
     }
+    is_used.get()
 }
