@@ -9,7 +9,8 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use handeye::app::{Command, NoticeKind, Workbench};
 use handeye::diagnose::Severity;
-use handeye::session::{self, samples};
+use handeye::session::edit::CellValue;
+use handeye::session::{self, Edit, Place, samples};
 use handeye::text::start::{open_sample, sample_lesson};
 use handeye::text::{poses as pose_words, shell as shell_words, start as start_words};
 use handeye::ui::actions::Action;
@@ -160,8 +161,8 @@ fn unticking_a_station_sends_exactly_that_command() {
     harness.run_steps(3);
     harness.get_by_label(&name).click();
     harness.run_steps(3);
-    let expected = Command::SetStationEnabled { station_idx: 1, enabled: false };
-    assert_eq!(harness.state().commands, [expected]);
+    let values = vec![(Place { station_idx: 1, capture_idx: 0 }, CellValue::Used(false))];
+    assert_eq!(harness.state().commands, [Command::Edit { edit: Edit::SetCells(values), gesture: None }]);
 }
 
 #[test]

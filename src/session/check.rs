@@ -1,7 +1,10 @@
 //! What is odd about a session that is otherwise as the format has it: things to look at before solving.
 
+use std::collections::HashMap;
+
 use crate::calibrate::ball::MIN_STATIONS;
-use crate::geometry::Rigid;
+use crate::geometry::stats::median;
+use crate::geometry::{Rigid, Vec3};
 
 use super::{Capture, Reading, Session, Station, Target};
 
@@ -11,6 +14,12 @@ pub const TWIN_DISTANCE_MM: f64 = 0.5;
 pub const TWIN_ANGLE_DEG: f64 = 0.5;
 /// No arm reaches further; beyond it the unit was hardly millimetres.
 pub const REACH_MM: f64 = 10_000.0;
+/// A pose is far from the others if it is further from their middle than most by this factor ...
+pub const FAR_FROM_OTHERS_RATIO: f64 = 8.0;
+/// ... and by this distance at least. Stations lie within a few hundred millimetres; a slipped digit is beyond.
+pub const FAR_FROM_OTHERS_MM: f64 = 400.0;
+/// Fewer stations have no middle that one of them could be far from.
+const MIN_STATIONS_FOR_MIDDLE: usize = 4;
 /// Commanded step and moved distance may differ by this much and a tenth of the step.
 pub const STEP_TOLERANCE_MM: f64 = 0.1;
 /// The tenth.
@@ -48,6 +57,13 @@ pub enum Finding {
         /// Angle between the two, degrees.
         angle_deg: f64,
     },
+    /// A pose at which nothing was measured.
+    NoReading {
+        /// Its station.
+        label: String,
+        /// Which capture, from 0.
+        capture_idx: usize,
+    },
     /// A profile without a single valid point.
     EmptyProfile {
         /// Its station.
@@ -75,6 +91,15 @@ pub enum Finding {
         /// Its distance from the base, mm.
         distance_mm: f64,
     },
+    /// A station far from all others: a slipped digit or sign, or another unit.
+    FarFromOthers {
+        /// The station.
+        label: String,
+        /// Its distance from the middle of the stations, mm.
+        distance_mm: f64,
+        /// The distance that half of them keep, mm.
+        typical_mm: f64,
+    },
     /// Noise figures are missing, so they will be estimated.
     NoiseNotGiven {
         /// The fields, as the file would name them.
@@ -91,9 +116,11 @@ impl Finding {
             Self::NoStations => "no-stations",
             Self::FewStations { .. } => "few-stations",
             Self::TwinStations { .. } => "twin-stations",
+            Self::NoReading { .. } => "no-reading",
             Self::EmptyProfile { .. } => "empty-profile",
             Self::StepDiffersFromPose { .. } => "step-differs-from-pose",
             Self::FarPose { .. } => "far-pose",
+            Self::FarFromOthers { .. } => "far-from-others",
             Self::NoiseNotGiven { .. } => "noise-not-given",
         }
     }
@@ -103,9 +130,11 @@ impl Finding {
     pub fn station_label(&self) -> Option<&str> {
         match self {
             Self::TwinStations { label, .. }
+            | Self::NoReading { label, .. }
             | Self::EmptyProfile { label, .. }
             | Self::StepDiffersFromPose { label, .. }
-            | Self::FarPose { label, .. } => Some(label),
+            | Self::FarPose { label, .. }
+            | Self::FarFromOthers { label, .. } => Some(label),
             Self::QuaternionsNormalised { .. }
             | Self::NoStations
             | Self::FewStations { .. }
@@ -128,13 +157,16 @@ pub fn findings(session: &Session) -> Vec<Finding> {
         findings.push(Finding::FewStations { num_enabled, needed: MIN_STATIONS });
     }
     findings.extend(noise_not_given(session));
+    let mut twins = twins(session);
+    let mut far = far_from_others(session);
     for (station_idx, station) in session.stations.iter().enumerate() {
         findings.extend(empty_profiles(station));
-        findings.extend(far_pose(station));
-        findings.extend(differing_step(station));
-        if station.enabled {
-            findings.extend(twins(station, &session.stations[station_idx + 1..]));
+        match far_pose(station) {
+            Some(finding) => findings.push(finding),
+            None => findings.extend(far.remove(&station_idx)),
         }
+        findings.extend(differing_step(station));
+        findings.extend(twins.remove(&station_idx).into_iter().flatten());
     }
     findings
 }
@@ -158,6 +190,9 @@ fn noise_not_given(session: &Session) -> Option<Finding> {
 
 fn empty_profiles(station: &Station) -> impl Iterator<Item = Finding> + '_ {
     station.captures.iter().enumerate().filter_map(|(capture_idx, capture)| match &capture.reading {
+        Reading::Profile(profile) if profile.is_empty() => {
+            Some(Finding::NoReading { label: station.label.clone(), capture_idx })
+        }
         Reading::Profile(profile) if profile.valid_points().next().is_none() => {
             Some(Finding::EmptyProfile { label: station.label.clone(), capture_idx })
         }
@@ -198,21 +233,69 @@ fn differing_step(station: &Station) -> Option<Finding> {
         })
 }
 
-/// Stations after this one with the same pose. For the plate and the point twins are as useless as for the ball.
-fn twins<'s>(station: &'s Station, later: &'s [Station]) -> impl Iterator<Item = Finding> + 's {
-    let first_pose = |station: &Station| station.captures.first().map(|capture| *capture.base_from_flange.rigid());
-    let pose: Option<Rigid> = first_pose(station);
-    later.iter().filter(|other| other.enabled).filter_map(move |other| {
-        let (pose, other_pose) = (pose?, first_pose(other)?);
-        let distance_mm = (pose.translation.vector - other_pose.translation.vector).norm();
-        let angle_deg = pose.rotation.angle_to(&other_pose.rotation).to_degrees();
-        (distance_mm < TWIN_DISTANCE_MM && angle_deg < TWIN_ANGLE_DEG).then(|| Finding::TwinStations {
-            label: station.label.clone(),
-            twin_label: other.label.clone(),
-            distance_mm,
-            angle_deg,
+/// The first capture's pose stands for its station.
+fn pose_of(station: &Station) -> Option<&Rigid> {
+    station.captures.first().map(|capture| capture.base_from_flange.rigid())
+}
+
+/// The stations whose positions lie outside the crowd, by their indices.
+fn far_from_others(session: &Session) -> HashMap<usize, Finding> {
+    let positions: Vec<(usize, Vec3)> = (session.stations.iter().enumerate())
+        .filter(|(_, station)| station.enabled)
+        .filter_map(|(station_idx, station)| Some((station_idx, pose_of(station)?.translation.vector)))
+        .collect();
+    if positions.len() < MIN_STATIONS_FOR_MIDDLE {
+        return HashMap::new();
+    }
+    let median_of = |values: &dyn Fn(&Vec3) -> f64| {
+        median(&mut positions.iter().map(|(_, position)| values(position)).collect::<Vec<f64>>())
+    };
+    let middle = Vec3::from_fn(|axis, _| median_of(&|position| position[axis]));
+    let distance_mm = |position: &Vec3| (position - middle).norm();
+    let typical_mm = median_of(&distance_mm);
+    let limit_mm = (FAR_FROM_OTHERS_RATIO * typical_mm).max(FAR_FROM_OTHERS_MM);
+    (positions.iter())
+        .filter(|(_, position)| distance_mm(position) > limit_mm)
+        .map(|(station_idx, position)| {
+            let label = session.stations[*station_idx].label.clone();
+            (*station_idx, Finding::FarFromOthers { label, distance_mm: distance_mm(position), typical_mm })
         })
-    })
+        .collect()
+}
+
+/// Stations with the same pose as an earlier one, by the index of that one; each is named once. For the plate and the
+/// point twins are as useless as for the ball.
+///
+/// Poses are sorted into cells of space as wide as twins may be apart, so only neighbours are compared.
+fn twins(session: &Session) -> HashMap<usize, Vec<Finding>> {
+    #[expect(clippy::cast_possible_truncation, reason = "positions are within 1e6 mm")]
+    let cell_of = |position: &Vec3| [0, 1, 2].map(|axis| (position[axis] / TWIN_DISTANCE_MM).floor() as i64);
+    let mut earlier: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
+    let mut twins: HashMap<usize, Vec<Finding>> = HashMap::new();
+    for (station_idx, station) in session.stations.iter().enumerate().filter(|(_, station)| station.enabled) {
+        let Some(pose) = pose_of(station) else { continue };
+        let [x, y, z] = cell_of(&pose.translation.vector);
+        let neighbours = (0..27_i64).map(|n| [x + n % 3 - 1, y + n / 3 % 3 - 1, z + n / 9 - 1]);
+        let twin = (neighbours.filter_map(|cell| earlier.get(&cell)).flatten())
+            .filter_map(|other_idx| {
+                let other = pose_of(&session.stations[*other_idx])?;
+                let distance_mm = (pose.translation.vector - other.translation.vector).norm();
+                let angle_deg = pose.rotation.angle_to(&other.rotation).to_degrees();
+                let is_twin = distance_mm < TWIN_DISTANCE_MM && angle_deg < TWIN_ANGLE_DEG;
+                is_twin.then_some((*other_idx, distance_mm, angle_deg))
+            })
+            .min_by_key(|(other_idx, ..)| *other_idx);
+        if let Some((other_idx, distance_mm, angle_deg)) = twin {
+            let label = session.stations[other_idx].label.clone();
+            let twin_label = station.label.clone();
+            let finding = Finding::TwinStations { label, twin_label, distance_mm, angle_deg };
+            twins.entry(other_idx).or_default().push(finding);
+        } else {
+            // A twin adds nothing that its first does not say.
+            earlier.entry([x, y, z]).or_default().push(station_idx);
+        }
+    }
+    twins
 }
 
 #[cfg(test)]
@@ -321,6 +404,27 @@ mod tests {
                     Transform::from_parts(Vec3::new(0.0, 0.0, 20_000.0), rotation);
             },
             &[Finding::FarPose { label: label(), capture_idx: 0, distance_mm: 20_000.0 }],
+        );
+    }
+
+    #[test]
+    fn a_pose_with_a_slipped_digit_is_far_from_the_others() {
+        check(
+            |session| {
+                let pose = &mut session.stations[1].captures;
+                pose.truncate(1);
+                pose[0].base_from_flange =
+                    Transform::from_parts(Vec3::new(5000.0, 0.0, 300.0), pose[0].base_from_flange.rotation());
+            },
+            &[Finding::FarFromOthers { label: "s1".to_owned(), distance_mm: 4500.0, typical_mm: 0.0 }],
+        );
+    }
+
+    #[test]
+    fn a_pose_without_a_reading_says_so() {
+        check(
+            |session| session.stations[2].captures[0].reading = Reading::Profile(Arc::new(Profile::default())),
+            &[Finding::NoReading { label: "s2".to_owned(), capture_idx: 0 }],
         );
     }
 

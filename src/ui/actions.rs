@@ -120,8 +120,11 @@ const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 /// The actions whose keys were pressed in this frame.
 #[must_use]
 pub fn pressed(ctx: &egui::Context, workbench: &Workbench) -> Vec<Action> {
+    // A text that is being typed has an undo of its own.
+    let is_typing = ctx.text_edit_focused();
     let mut pressed: Vec<Action> = WITH_SHORTCUT
         .into_iter()
+        .filter(|action| !(is_typing && matches!(action, Action::Undo | Action::Redo)))
         .filter(|action| {
             let other = (*action == Action::Redo).then_some(OTHER_REDO);
             let mut shortcuts = action.shortcut().into_iter().chain(other);

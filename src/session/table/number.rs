@@ -16,8 +16,13 @@ pub enum NotANumber {
     },
 }
 
-/// Reads a number; `12,5` is twelve and a half, `1.234,5` and `1,234.5` have a thousands separator, and a true minus and a
-/// plus are understood. NaN and infinity are not numbers.
+/// Units that may stand behind a number; they are read over, not converted.
+const UNITS: [&str; 5] = ["mm", "deg", "rad", "°", "m"];
+
+/// Reads a number; `12,5` is twelve and a half, `1.234,5`, `1,234.5` and `1 234,5` have thousands separators, a true minus
+/// and a plus are understood, and a unit behind the number is read over. NaN and infinity are not numbers.
+///
+/// A single comma or point is always the decimal one.
 ///
 /// # Errors
 /// [`NotANumber`].
@@ -27,16 +32,132 @@ pub fn parse_number(text: &str) -> Result<f64, NotANumber> {
         return Err(NotANumber::Empty);
     }
     let refused = || NotANumber::Text { found: trimmed.chars().take(40).collect() };
-    let plain: String =
-        trimmed.chars().filter(|c| !c.is_whitespace()).map(|c| if c == '−' { '-' } else { c }).collect();
-    let normalised = match (plain.rfind(','), plain.rfind('.')) {
-        (Some(_), None) if plain.matches(',').count() == 1 => plain.replace(',', "."),
-        (Some(comma), Some(point)) if comma > point => plain.replace('.', "").replace(',', "."),
-        (Some(_), Some(_)) => plain.replace(',', ""),
-        _ => plain,
+    let unitless = UNITS.iter().find_map(|unit| trimmed.strip_suffix(unit)).unwrap_or(trimmed).trim_end();
+    let (negative, magnitude) = match unitless.strip_prefix(['-', '−', '–']) {
+        Some(rest) => (true, rest),
+        None => (false, unitless.strip_prefix('+').unwrap_or(unitless)),
     };
-    let has_digit_first =
-        normalised.trim_start_matches(['+', '-']).starts_with(|c: char| c.is_ascii_digit() || c == '.');
-    let number: f64 = normalised.parse().map_err(|_| refused())?;
-    if has_digit_first && number.is_finite() { Ok(number) } else { Err(refused()) }
+    let (mantissa, exponent) = match magnitude.find(['e', 'E']) {
+        Some(at) => (&magnitude[..at], exponent(&magnitude[at + 1..]).ok_or_else(refused)?),
+        None => (magnitude, 0),
+    };
+    let digits = plain_digits(mantissa.trim_start()).ok_or_else(refused)?;
+    let number: f64 = format!("{digits}e{exponent}").parse().map_err(|_| refused())?;
+    if number.is_finite() { Ok(if negative { -number } else { number }) } else { Err(refused()) }
+}
+
+fn exponent(text: &str) -> Option<i32> {
+    text.replace('−', "-").parse().ok()
+}
+
+/// Digits with at most a decimal point; `None` if it is anything else or if separators stand where none belong.
+fn plain_digits(mantissa: &str) -> Option<String> {
+    let is_blank = |letter: char| matches!(letter, ' ' | '\u{a0}' | '\u{202f}' | '\u{2009}' | '\'' | '’');
+    let last = mantissa.rfind(['.', ',']);
+    let is_decimal = |at: usize| {
+        let separator = &mantissa[at..=at];
+        // Once at most, and the others before it.
+        mantissa.matches(separator).count() == 1
+    };
+    let (whole, fraction) = match last {
+        Some(at) if is_decimal(at) => (&mantissa[..at], Some(&mantissa[at + 1..])),
+        _ => (mantissa, None),
+    };
+    let fraction = fraction.unwrap_or_default();
+    let separators: Vec<char> = whole.chars().filter(|letter| !letter.is_ascii_digit()).collect();
+    let is_separator = |letter: char| is_blank(letter) || letter == '.' || letter == ',';
+    let grouped = separators.iter().all(|letter| is_separator(*letter) && *letter == separators[0]);
+    let groups: Vec<&str> = whole.split(|letter: char| !letter.is_ascii_digit()).collect();
+    let threes = groups.iter().skip(1).all(|group| group.len() == 3) && (groups.len() == 1 || !groups[0].is_empty());
+    if !grouped || !threes || !fraction.bytes().all(|byte| byte.is_ascii_digit()) {
+        return None;
+    }
+    let whole: String = groups.concat();
+    (!whole.is_empty() || !fraction.is_empty()).then(|| format!("{whole}.{fraction}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn check(text: &str, expected: Option<f64>) {
+        assert_eq!(parse_number(text).ok(), expected, "{text:?}");
+    }
+
+    #[test]
+    fn numbers_of_any_country() {
+        for (text, value) in [
+            ("12", 12.0),
+            (" 12.5 ", 12.5),
+            ("12,5", 12.5),
+            ("-0,25", -0.25),
+            ("−3", -3.0),
+            ("+7.", 7.0),
+            (".5", 0.5),
+            (",5", 0.5),
+            ("1e-3", 1e-3),
+            ("1.5E+02", 150.0),
+            ("1,5e−2", 0.015),
+            ("1.234,5", 1234.5),
+            ("1,234.5", 1234.5),
+            ("1.234.567", 1_234_567.0),
+            ("1.234.567,25", 1_234_567.25),
+            ("1 234,5", 1234.5),
+            ("1\u{202f}234,5", 1234.5),
+            ("1'234.5", 1234.5),
+            // One separator is the decimal one, whatever follows it.
+            ("1.234", 1.234),
+            ("1,234", 1.234),
+            ("12 mm", 12.0),
+            ("90°", 90.0),
+            ("0.5 m", 0.5),
+            ("0.1 + 0.2", f64::NAN),
+        ] {
+            check(text, (!value.is_nan()).then_some(value));
+        }
+    }
+
+    #[test]
+    fn what_is_no_number_is_refused() {
+        for text in [
+            "",
+            " ",
+            "-",
+            ".",
+            ",",
+            "e5",
+            "1e",
+            "nan",
+            "inf",
+            "-inf",
+            "infinity",
+            "1.2.3",
+            "1,2,3",
+            "1.23.456",
+            "1..2",
+            "12 5",
+            "1 2",
+            "--3",
+            "+-3",
+            "1-2",
+            "0x10",
+            "abc",
+            "1e999",
+            "1.234,567,8",
+            "1,234.567.8",
+            "..5",
+            "1.2e3.4",
+            "mm",
+            "5 kg",
+        ] {
+            check(text, None);
+        }
+    }
+
+    #[test]
+    fn the_refusal_shows_what_was_found() {
+        assert_eq!(parse_number(" "), Err(NotANumber::Empty));
+        assert_eq!(parse_number(" abc "), Err(NotANumber::Text { found: "abc".to_owned() }));
+    }
 }

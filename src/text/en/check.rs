@@ -19,6 +19,9 @@ pub fn finding_message(finding: &Finding) -> String {
         Finding::TwinStations { label, twin_label, distance_mm, angle_deg } => format!(
             "Stations {label} and {twin_label} have the same pose within {distance_mm:.2} mm and {angle_deg:.2}°: the second adds little."
         ),
+        Finding::NoReading { label, capture_idx } => {
+            format!("Station {label}, capture {}: nothing was measured at this pose.", capture_idx + 1)
+        }
         Finding::EmptyProfile { label, capture_idx } => {
             format!("Station {label}, profile {}: no valid point.", capture_idx + 1)
         }
@@ -30,6 +33,9 @@ pub fn finding_message(finding: &Finding) -> String {
             "Station {label}, profile {}: the pose is {:.1} m from the base; check that translations are in mm.",
             capture_idx + 1,
             distance_mm / 1000.0
+        ),
+        Finding::FarFromOthers { label, distance_mm, typical_mm } => format!(
+            "Station {label} is {distance_mm:.0} mm from the middle of the stations, half of which are within {typical_mm:.0} mm: check digits, signs and units."
         ),
         Finding::NoiseNotGiven { fields } => {
             format!("Noise is not given and will be estimated: {}.", fields.join(", "))

@@ -1,4 +1,13 @@
-//! Step Poses: the stations in the robot's own convention, and which of them take part.
+//! Step Poses: the stations in the robot's own convention, edited as in a spreadsheet.
 
+mod checks;
+mod cursor;
+mod editor;
+mod grid;
+mod keys;
 pub mod model;
 pub mod panel;
+mod pending;
+mod sheet;
+mod toolbar;
+mod view;

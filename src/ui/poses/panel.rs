@@ -1,297 +1,166 @@
-//! The pose table.
+//! The pose table: the card around the grid, and the way between its state, the window and the document.
 
-use std::collections::{BTreeMap, BTreeSet};
-
-use egui::{Key, Modifiers, RichText, Sense, Ui, vec2};
-use egui_extras::{Column, TableRow};
+use egui::{Align, Id, Key, Label, Layout, Modifiers, Ui, UiBuilder, vec2};
 
 use crate::app::{Command, Document};
+use crate::session::Place;
+use crate::session::table::has_cell;
 use crate::text::poses as words;
-use crate::ui::widgets::tables::{faded_number_cell, head, number_cell, number_column, number_head, table};
-use crate::ui::widgets::{card_with_height, fixed, named_checkbox, symbol_button};
+use crate::ui::widgets::card_with_height;
 use crate::ui::{PanelContext, theme};
 
-use super::model::{self, Row};
+use super::checks::Checks;
+use super::cursor::Cursor;
+use super::grid::Grid;
+use super::keys::{self, Keyboard};
+use super::sheet::Sheet;
+use super::toolbar;
 
-/// Below this width, points, the columns that other places show as well give way, and figures lose a digit.
-const NARROW_WIDTH: f32 = 700.0;
+/// Height of the line with the buttons, points.
+const TOOLBAR_HEIGHT: f32 = 32.0;
+/// Height of the line below the table, points.
+const LINE_HEIGHT: f32 = 28.0;
 
-/// What the width allows.
-#[derive(Clone, Copy)]
-struct Density {
-    is_narrow: bool,
-    /// Of positions in mm and angles in degrees; controllers report three.
-    decimals: usize,
-}
-
-impl Density {
-    fn of(ui: &Ui) -> Self {
-        let is_narrow = ui.available_width() < NARROW_WIDTH;
-        Self { is_narrow, decimals: if is_narrow { 2 } else { 3 } }
-    }
-}
-
-/// What is unfolded, and what the check of the session says of its stations.
-#[derive(Debug, Default)]
+/// The state of the step.
+#[derive(Clone, Debug, Default)]
 pub struct PosesState {
-    unfolded: BTreeSet<usize>,
-    checks: BTreeMap<String, Vec<String>>,
-    checked_revision: Option<u64>,
-}
-
-impl PosesState {
-    /// Checks the session anew if it has changed.
-    fn check(&mut self, document: &Document) {
-        if self.checked_revision != Some(document.revision) {
-            self.checked_revision = Some(document.revision);
-            self.checks = model::checks(&document.session);
-        }
-    }
+    sheet: Sheet,
+    checks: Checks,
+    keyboard: Keyboard,
+    /// The station and capture that the window looked at when the table last was drawn.
+    seen: Option<Place>,
 }
 
 /// Draws the step.
 pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut PosesState) {
     let Some(document) = context.workbench.document() else { return };
-    state.check(document);
-    let num_stations = document.session.stations.len();
-    let num_enabled = document.session.stations.iter().filter(|station| station.enabled).count();
-    let rows = model::rows(&document.session, &state.unfolded);
-    let moved_to = move_by_keys(ui, context, &rows);
-    let is_all_unfolded = state.unfolded.len() >= num_stations;
-    let mut toggle_all = false;
+    show_table(ui, context, document, state);
+}
+
+fn show_table(ui: &mut Ui, context: &mut PanelContext<'_>, document: &Document, state: &mut PosesState) {
+    let PosesState { sheet, checks, keyboard, seen } = state;
+    sheet.refresh(document);
+    checks.refresh(context.workbench, context.selection.method);
+    let id = Id::unique("pose table");
+    follow_selection(context, sheet, *seen);
+    let has_focus = take_keys(ui, id, sheet, keyboard, document, context.commands);
     let height = ui.available_height();
     card_with_height(
         ui,
         words::TITLE,
         height,
         |ui| {
-            let label = if is_all_unfolded { words::FOLD_ALL } else { words::UNFOLD_ALL };
-            let button = egui::Button::new(RichText::new(label).small()).min_size(vec2(0.0, theme::ROW_HEIGHT));
-            ui.spacing_mut().interact_size.y = theme::ROW_HEIGHT;
-            ui.spacing_mut().button_padding = vec2(8.0, 2.0);
-            toggle_all = ui.add(button).clicked();
-            ui.label(theme::dim(ui, words::usage(num_enabled, num_stations)));
+            let stations = &document.session.stations;
+            let num_enabled = stations.iter().filter(|station| station.enabled).count();
+            ui.label(theme::dim(ui, words::usage(num_enabled, stations.len())));
         },
         |ui| {
-            if rows.is_empty() {
-                ui.centered_and_justified(|ui| ui.label(theme::dim(ui, words::NO_STATIONS)));
-            } else {
-                show_table(ui, context, document, state, &rows, moved_to);
-            }
+            ui.spacing_mut().item_spacing.y = 0.0;
+            let width = ui.available_width();
+            ui.allocate_ui_with_layout(vec2(width, TOOLBAR_HEIGHT), Layout::left_to_right(Align::Center), |ui| {
+                ui.set_min_size(vec2(width, TOOLBAR_HEIGHT));
+                ui.add_space(8.0);
+                sheet.takes_keyboard |= toolbar::show(ui, sheet, document, context.commands);
+            });
+            let area = ui.available_rect_before_wrap();
+            let (table, line) = area.split_top_bottom_at_y(area.bottom() - LINE_HEIGHT);
+            let mut inside = ui.new_child(UiBuilder::new().max_rect(table));
+            Grid { document, checks, id, has_focus }.show(&mut inside, sheet, context.commands);
+            let mut inside = ui.new_child(UiBuilder::new().max_rect(line).layout(Layout::left_to_right(Align::Center)));
+            show_line(&mut inside, sheet, document);
+            ui.advance_cursor_after_rect(area);
         },
     );
-    if toggle_all {
-        state.unfolded = if is_all_unfolded { BTreeSet::new() } else { (0..num_stations).collect() };
+    sheet.takes_keyboard |= keyboard.end_editor(sheet, context.commands);
+    // Last of all, as a click anywhere but on the grid itself takes the keyboard away from it.
+    if std::mem::take(&mut sheet.takes_keyboard) {
+        ui.memory_mut(|memory| memory.request_focus(id));
+        ui.ctx().request_repaint();
     }
+    *seen = tell_selection(context, sheet);
 }
 
-/// Moves the selection with the arrow keys; answers the row to be brought into view.
-fn move_by_keys(ui: &Ui, context: &mut PanelContext<'_>, rows: &[Row]) -> Option<usize> {
+/// Gives the table what was pressed, if it has the keyboard. Without it, the arrows take it.
+fn take_keys(
+    ui: &Ui,
+    id: Id,
+    sheet: &mut Sheet,
+    keyboard: &mut Keyboard,
+    document: &Document,
+    commands: &mut Vec<Command>,
+) -> bool {
+    let has_focus = ui.memory(|memory| memory.has_focus(id));
+    if has_focus || sheet.editor.is_some() {
+        keys::lock_focus(ui.ctx(), id);
+        keyboard.handle(ui, sheet, document, commands);
+        return true;
+    }
     if ui.ctx().egui_wants_keyboard_input() {
-        return None;
+        return false;
     }
-    let pressed = |key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));
-    let (up, down) = (pressed(Key::ArrowUp), pressed(Key::ArrowDown));
-    if up == down {
-        return None;
+    let arrows = [Key::ArrowUp, Key::ArrowDown, Key::ArrowLeft, Key::ArrowRight];
+    let is_wanted = ui.input(|input| {
+        let takes = |key: &Key| input.modifiers == Modifiers::NONE && input.key_pressed(*key);
+        let is_pasted = |event: &egui::Event| matches!(event, egui::Event::Paste(_));
+        arrows.iter().any(takes) || (sheet.view.rows.is_empty() && input.events.iter().any(is_pasted))
+    });
+    if is_wanted {
+        ui.memory_mut(|memory| memory.request_focus(id));
+        keyboard.handle(ui, sheet, document, commands);
     }
-    let current = rows.iter().position(|row| is_selected(context, *row)).unwrap_or(0);
-    let row_idx = if up { current.saturating_sub(1) } else { (current + 1).min(rows.len().checked_sub(1)?) };
-    select(context, *rows.get(row_idx)?);
-    Some(row_idx)
+    is_wanted
 }
 
-/// A station's row stands for its first capture; further captures are selected in their own rows, where unfolded.
-fn is_selected(context: &PanelContext<'_>, row: Row) -> bool {
+/// The cursor goes to the row of what the user looks at elsewhere.
+fn follow_selection(context: &PanelContext<'_>, sheet: &mut Sheet, seen: Option<Place>) {
     let selection = &context.selection;
-    match row {
-        Row::Station(station_idx) => selection.station_idx == station_idx && selection.capture_idx == 0,
-        Row::Capture { station_idx, capture_idx } => {
-            selection.station_idx == station_idx && selection.capture_idx == capture_idx && capture_idx > 0
-        }
+    let place = Place { station_idx: selection.station_idx, capture_idx: selection.capture_idx };
+    if seen != Some(place)
+        && let Some(row) = sheet.view.row_of(place)
+        && sheet.cursor.row != row
+    {
+        sheet.cursor = Cursor::at(row, sheet.cursor.column);
+        sheet.brings_into_view = true;
     }
 }
 
-fn select(context: &mut PanelContext<'_>, row: Row) {
-    (context.selection.station_idx, context.selection.capture_idx) = match row {
-        Row::Station(station_idx) => (station_idx, 0),
-        Row::Capture { station_idx, capture_idx } => (station_idx, capture_idx),
-    };
+/// The user looks at the row of the cursor. A folded sweep stands for whichever of its captures was looked at.
+fn tell_selection(context: &mut PanelContext<'_>, sheet: &Sheet) -> Option<Place> {
+    let (row, _) = sheet.cell()?;
+    let selection = &mut context.selection;
+    let present = Place { station_idx: selection.station_idx, capture_idx: selection.capture_idx };
+    if sheet.view.row_of(present) != Some(sheet.cursor.row) {
+        let place = row.place();
+        (selection.station_idx, selection.capture_idx) = (place.station_idx, place.capture_idx);
+    }
+    Some(Place { station_idx: selection.station_idx, capture_idx: selection.capture_idx })
 }
 
-fn show_table(
-    ui: &mut Ui,
-    context: &mut PanelContext<'_>,
-    document: &Document,
-    state: &mut PosesState,
-    rows: &[Row],
-    moved_to: Option<usize>,
-) {
-    let angle_names = document.session.robot.notation.convention.angle_names;
-    // Cells touch, so that the hairlines between rows run through.
-    ui.spacing_mut().item_spacing.x = 0.0;
-    let density = Density::of(ui);
-    let mut builder = table(ui, if density.is_narrow { "narrow poses" } else { "poses" })
-        .sense(Sense::click())
-        .column(Column::exact(if density.is_narrow { 36.0 } else { 44.0 }))
-        .column(Column::exact(28.0))
-        .column(Column::initial(if density.is_narrow { 48.0 } else { 96.0 }).at_least(48.0).clip(true));
-    if !density.is_narrow {
-        builder = builder.column(Column::exact(48.0));
-    }
-    builder = builder.columns(number_column(56.0), 6);
-    if !density.is_narrow {
-        builder = builder.column(Column::exact(80.0));
-    }
-    builder = builder.column(Column::exact(if density.is_narrow { 52.0 } else { 72.0 }));
-    if let Some(row_idx) = moved_to {
-        builder = builder.scroll_to_row(row_idx, None);
-    }
-    builder
-        .header(theme::ROW_HEIGHT, |mut header| {
-            head(&mut header, words::USED);
-            head(&mut header, "");
-            head(&mut header, words::STATION);
-            if !density.is_narrow {
-                head(&mut header, words::SIDE);
-            }
-            for name in ["x", "y", "z"] {
-                number_head(&mut header, &format!("{name} / mm"));
-            }
-            for name in angle_names {
-                number_head(&mut header, &format!("{name} / °"));
-            }
-            if !density.is_narrow {
-                number_head(&mut header, words::CAPTURES);
-            }
-            head(&mut header, words::CHECK);
-        })
-        .body(|body| {
-            body.rows(theme::ROW_HEIGHT, rows.len(), |mut table_row| {
-                let Some(&row) = rows.get(table_row.index()) else { return };
-                table_row.set_overline(true);
-                table_row.set_selected(is_selected(context, row));
-                match row {
-                    Row::Station(station_idx) => {
-                        show_station(&mut table_row, context, document, state, station_idx, density);
-                    }
-                    Row::Capture { station_idx, capture_idx } => {
-                        show_capture(&mut table_row, context, document, [station_idx, capture_idx], density);
-                    }
-                }
-                if table_row.response().clicked() {
-                    select(context, row);
-                }
-            });
-        });
-}
-
-fn show_station(
-    row: &mut TableRow<'_, '_>,
-    context: &mut PanelContext<'_>,
-    document: &Document,
-    state: &mut PosesState,
-    station_idx: usize,
-    density: Density,
-) {
-    let Some(station) = document.session.stations.get(station_idx) else { return };
-    row.col(|ui| {
-        ui.add_space(8.0);
-        let mut enabled = station.enabled;
-        if named_checkbox(ui, &mut enabled, &words::use_station(&station.label)).changed() {
-            context.commands.push(Command::SetStationEnabled { station_idx, enabled });
-        }
-    });
-    row.col(|ui| {
-        if station.captures.len() > 1 {
-            let is_unfolded = state.unfolded.contains(&station_idx);
-            let (symbol, name) = if is_unfolded {
-                ("▾", words::fold_station(&station.label))
-            } else {
-                ("▸", words::unfold_station(&station.label))
-            };
-            if symbol_button(ui, symbol, &name).clicked() && !state.unfolded.remove(&station_idx) {
-                state.unfolded.insert(station_idx);
-            }
-        }
-    });
-    row.col(|ui| {
-        ui.add_space(4.0);
-        let color = if station.enabled { theme::palette(ui).text } else { theme::palette(ui).text_dim };
-        ui.label(RichText::new(&station.label).color(color));
-    });
-    if !density.is_narrow {
-        row.col(|ui| {
-            ui.add_space(4.0);
-            ui.label(theme::dim(ui, words::side(station.side)));
-        });
-    }
-    let figures = model::pose_figures(&document.session, station_idx, 0);
-    pose_cells(row, figures, density, station.enabled);
-    if !density.is_narrow {
-        number_cell(row, station.captures.len().to_string());
-    }
-    row.col(|ui| {
-        ui.add_space(12.0);
-        if station.enabled {
-            let mut findings = state.checks.get(&station.label).cloned().unwrap_or_default();
-            if let Some(results) = context.workbench.results() {
-                findings.extend(model::findings(&document.session, results, context.selection.method, station_idx));
-            }
-            check_mark(ui, &findings);
-        } else {
-            ui.label(theme::dim(ui, "–")).on_hover_text(words::LEFT_OUT);
-        }
-    });
-}
-
-fn show_capture(
-    row: &mut TableRow<'_, '_>,
-    context: &PanelContext<'_>,
-    document: &Document,
-    [station_idx, capture_idx]: [usize; 2],
-    density: Density,
-) {
-    let Some(station) = document.session.stations.get(station_idx) else { return };
-    row.col(|_| {});
-    row.col(|_| {});
-    row.col(|ui| {
-        ui.add_space(16.0);
-        ui.label(theme::dim(ui, words::capture_name(&station.label, capture_idx + 1)));
-    });
-    if !density.is_narrow {
-        row.col(|_| {});
-    }
-    pose_cells(row, model::pose_figures(&document.session, station_idx, capture_idx), density, false);
-    if !density.is_narrow {
-        row.col(|_| {});
-    }
-    row.col(|ui| {
-        let refusal = context.workbench.results().and_then(|results| model::refusal(results, station_idx, capture_idx));
-        if let Some(reason) = refusal {
-            ui.add_space(12.0);
-            ui.label(RichText::new("!").color(theme::palette(ui).warn)).on_hover_text(reason);
-        }
-    });
-}
-
-fn pose_cells(row: &mut TableRow<'_, '_>, figures: Option<[f64; 6]>, density: Density, takes_part: bool) {
-    for figure in figures.into_iter().flatten() {
-        let text = fixed(figure, density.decimals);
-        if takes_part {
-            number_cell(row, text);
-        } else {
-            faded_number_cell(row, text);
-        }
-    }
-}
-
-fn check_mark(ui: &mut Ui, findings: &[String]) {
+/// The line below the table: why the cell under the cursor is not in the document, or what was just done.
+fn show_line(ui: &mut Ui, sheet: &mut Sheet, document: &Document) {
     let palette = theme::palette(ui);
-    if findings.is_empty() {
-        ui.label(RichText::new("✔").color(palette.good)).on_hover_text(words::FINE);
+    let session = &document.session;
+    ui.painter().hline(ui.max_rect().x_range(), ui.max_rect().top(), (1.0, palette.hairline));
+    ui.add_space(theme::GAP);
+    let num_waiting = sheet.pending.count(session);
+    let here = sheet.cell().filter(|(row, column)| has_cell(session, *row, *column));
+    let waiting = here.and_then(|(row, column)| sheet.pending.get(session, row.place(), column));
+    if let Some(waiting) = waiting {
+        ui.label(egui::RichText::new("!").color(palette.bad));
+        ui.add(Label::new(words::not_taken(&waiting.text, &waiting.reason)).truncate());
+    } else if let Some(said) = &sheet.said {
+        ui.add(Label::new(theme::dim(ui, said)).truncate());
+    } else if num_waiting > 0 {
+        ui.label(egui::RichText::new("!").color(palette.bad));
+        ui.label(words::refused_cells(num_waiting));
+        if ui.small_button(words::GO_THERE).clicked()
+            && let Some((place, column)) = sheet.pending.first(session)
+        {
+            sheet.go_to(place, column);
+        }
+    } else if session.stations.is_empty() {
+        ui.label(theme::dim(ui, words::NO_STATIONS));
     } else {
-        let text = RichText::new(format!("{} !", findings.len())).color(palette.warn);
-        ui.label(text).on_hover_text(findings.join("\n"));
+        ui.add(Label::new(theme::dim(ui, words::KEYS_HINT).small()).truncate());
     }
 }
