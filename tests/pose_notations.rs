@@ -145,7 +145,8 @@ fn multiplied_out(convention: &PoseConvention, angles_deg: [f64; 3]) -> UnitQuat
             "Rz" => Axis::Z,
             _ => panic!("{}: {factor}", convention.id),
         };
-        let place = convention.angle_names.iter().position(|angle_name| *angle_name == name).expect("a name of the pendant");
+        let place =
+            convention.angle_names.iter().position(|angle_name| *angle_name == name).expect("a name of the pendant");
         product * about(axis, angles_deg[place].to_radians())
     })
 }

@@ -75,13 +75,7 @@ impl PoseConvention {
         like_kuka("kuka-abc", "KUKA A B C"),
         Self {
             usual_angle_unit: AngleUnit::Radians,
-            ..convention(
-                "ur-rotvec",
-                "UR RX RY RZ",
-                ["RX", "RY", "RZ"],
-                "rotation vector",
-                AngleOrder::RotationVector,
-            )
+            ..convention("ur-rotvec", "UR RX RY RZ", ["RX", "RY", "RZ"], "rotation vector", AngleOrder::RotationVector)
         },
         fixed_xyz("yaskawa-rxryrz", "Yaskawa Rx Ry Rz"),
         convention("staubli-rxryrz", "Stäubli Rx Ry Rz", ["Rx", "Ry", "Rz"], "Rx(Rx) Ry(Ry) Rz(Rz)", INTRINSIC_XYZ),

@@ -193,11 +193,7 @@ impl PoseReading {
         }
     }
 
-    fn written(
-        &self,
-        written: Option<WrittenAngles>,
-        convention: &'static PoseConvention,
-    ) -> Option<WrittenAngles> {
+    fn written(&self, written: Option<WrittenAngles>, convention: &'static PoseConvention) -> Option<WrittenAngles> {
         if self.inversion != Inversion::AsGiven {
             return None;
         }

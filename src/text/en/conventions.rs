@@ -148,13 +148,17 @@ pub fn choice_name(row: &str, label: &str) -> String {
     format!("{row}: {label}")
 }
 
+/// Name of a field of the tool point.
+#[must_use]
+pub fn tool_number(name: &str) -> String {
+    format!("{name} of the tool point")
+}
+
 /// The three axes one after the other, as in "Z Y X"; or the rotation vector.
 #[must_use]
 pub fn axes_name(order: AngleOrder) -> String {
     match order {
-        AngleOrder::Intrinsic(axes) | AngleOrder::Extrinsic(axes) => {
-            axes.map(|axis| format!("{axis:?}")).join(" ")
-        }
+        AngleOrder::Intrinsic(axes) | AngleOrder::Extrinsic(axes) => axes.map(|axis| format!("{axis:?}")).join(" "),
         AngleOrder::RotationVector => "rotation vector".to_owned(),
     }
 }
@@ -235,7 +239,10 @@ pub fn notation_units_hint(notation: &PoseNotation) -> String {
     let length = length_unit(notation.length_unit);
     match notation.orientation {
         OrientationForm::Angles => {
-            format!("Poses are shown in {length} and {}; all else in millimetres and degrees", angle_unit(notation.angle_unit))
+            format!(
+                "Poses are shown in {length} and {}; all else in millimetres and degrees",
+                angle_unit(notation.angle_unit)
+            )
         }
         OrientationForm::QuaternionWxyz | OrientationForm::QuaternionXyzw => {
             format!("Poses are shown in {length}; all else in millimetres and degrees")
@@ -256,15 +263,11 @@ pub fn notation_hint(notation: &PoseNotation) -> String {
 /// All that a notation is, on one line.
 #[must_use]
 pub fn notation_in_full(notation: &PoseNotation) -> String {
-    let mut text = notation_name(notation).to_owned();
+    let name = notation_name(notation);
     let is_usual = notation.length_unit == LengthUnit::Millimetres && notation.angle_unit == AngleUnit::Degrees;
-    if !is_usual {
-        text.push_str(&format!(" ({})", notation_units(notation)));
-    }
-    if let Some(frame) = notation_frame(notation) {
-        text.push_str(&format!(", {frame}"));
-    }
-    text
+    let units = if is_usual { String::new() } else { format!(" ({})", notation_units(notation)) };
+    let frame = notation_frame(notation).map_or_else(String::new, |frame| format!(", {frame}"));
+    format!("{name}{units}{frame}")
 }
 
 /// A convention's formula, and the order that it is.

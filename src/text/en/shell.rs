@@ -52,10 +52,6 @@ pub const NOTHING_TO_REDO: &str = "Nothing has been undone.";
 pub const NO_TITLE: &str = "no session";
 /// Name of the dot that marks unsaved changes.
 pub const UNSAVED: &str = "Unsaved changes";
-/// The units in use.
-pub const UNITS: &str = "mm · °";
-/// What the units chip says on hover.
-pub const UNITS_HINT: &str = "The units of this window: lengths in millimetres, angles in degrees";
 
 /// What the convention chip says on hover.
 #[must_use]

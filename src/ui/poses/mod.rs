@@ -1,4 +1,5 @@
 //! Step Poses: the stations in the robot's own convention, and which of them take part.
 
+pub mod convention;
 pub mod model;
 pub mod panel;

@@ -11,6 +11,7 @@ use crate::ui::widgets::tables::{faded_number_cell, head, number_cell, number_co
 use crate::ui::widgets::{card_with_height, fixed, named_checkbox, symbol_button};
 use crate::ui::{PanelContext, theme};
 
+use super::convention::{self, ConventionState};
 use super::model::{self, Row};
 
 /// Below this width, points, the columns that other places show as well give way, and figures lose a digit.
@@ -34,6 +35,7 @@ impl Density {
 /// What is unfolded, and what the check of the session says of its stations.
 #[derive(Debug, Default)]
 pub struct PosesState {
+    convention: ConventionState,
     unfolded: BTreeSet<usize>,
     checks: BTreeMap<String, Vec<String>>,
     checked_revision: Option<u64>,
@@ -53,6 +55,7 @@ impl PosesState {
 pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut PosesState) {
     let Some(document) = context.workbench.document() else { return };
     state.check(document);
+    convention::bar(ui, context, &mut state.convention);
     let num_stations = document.session.stations.len();
     let num_enabled = document.session.stations.iter().filter(|station| station.enabled).count();
     let rows = model::rows(&document.session, &state.unfolded);

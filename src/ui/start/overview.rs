@@ -4,6 +4,7 @@ use egui::{Frame, Ui, UiBuilder, vec2};
 
 use crate::app::Document;
 use crate::session::{Reading, Session};
+use crate::text::conventions::notation_in_full;
 use crate::text::start as words;
 use crate::ui::theme;
 use crate::ui::widgets::{card_with_height, fixed, value_row};
@@ -66,7 +67,7 @@ fn setup(session: &Session) -> Vec<(&'static str, String)> {
     let or_not_stated = |text: &str| if text.is_empty() { words::NOT_STATED.to_owned() } else { text.to_owned() };
     vec![
         (words::ROBOT, or_not_stated(&session.robot.model)),
-        (words::CONVENTION, session.robot.notation.convention.label.to_owned()),
+        (words::CONVENTION, notation_in_full(&session.robot.notation)),
         (words::POSITION_STD, stated(session.robot.position_std_mm, 3, "mm")),
         (words::ORIENTATION_STD, stated(session.robot.orientation_std_deg, 4, "°")),
         (words::SENSOR, or_not_stated(&session.sensor.model)),

@@ -1,9 +1,7 @@
 //! Data of the bar and its dialogs, built without egui.
 
-use crate::geometry::notation::{LengthUnit, NotAPose, OrientationForm};
-use crate::geometry::{PoseConvention, PoseNotation, Transform, Vec3, so3};
-use crate::geometry::{Base, Flange};
-use crate::session::edit::shown_numbers;
+use crate::geometry::notation::{AngleUnit, LengthUnit, NotAPose, OrientationForm};
+use crate::geometry::{Base, Flange, PoseConvention, PoseNotation, Transform, Vec3, so3};
 use crate::session::{Edit, EditRefusal, Session};
 use crate::text::conventions as words;
 
@@ -43,20 +41,15 @@ impl Choice {
     /// The notation after this choice: with the usual units, of the same frame as before.
     #[must_use]
     pub fn applied_to(&self, notation: &PoseNotation) -> PoseNotation {
-        match self.convention {
-            Some(convention) => PoseNotation {
-                flange_from_tcp: notation.flange_from_tcp,
-                is_inverse: notation.is_inverse,
-                ..PoseNotation::usual(convention)
-            },
-            None => {
-                let length_unit = match self.orientation {
-                    OrientationForm::QuaternionXyzw => LengthUnit::Metres,
-                    OrientationForm::Angles | OrientationForm::QuaternionWxyz => LengthUnit::Millimetres,
-                };
-                PoseNotation { orientation: self.orientation, length_unit, ..*notation }
-            }
+        let PoseNotation { flange_from_tcp, is_inverse, .. } = *notation;
+        if let Some(convention) = self.convention {
+            return PoseNotation { flange_from_tcp, is_inverse, ..PoseNotation::usual(convention) };
         }
+        let length_unit = match self.orientation {
+            OrientationForm::QuaternionXyzw => LengthUnit::Metres,
+            OrientationForm::Angles | OrientationForm::QuaternionWxyz => LengthUnit::Millimetres,
+        };
+        PoseNotation { orientation: self.orientation, length_unit, ..*notation }
     }
 
     /// Whether this is what the notation writes.
@@ -174,11 +167,14 @@ pub fn frames(session: &Session) -> Vec<NamedFrame> {
     session.stations.iter().filter_map(named).take(MAX_FRAMES).collect()
 }
 
-/// The numbers of the first stations' poses, as the table shows them.
+/// Decimals of the number at a place of a pose, so that every unit shows about a micrometre or a thousandth of a degree.
 #[must_use]
-pub fn first_numbers(session: &Session, notation: &PoseNotation) -> Vec<Vec<f64>> {
-    let captures = session.stations.iter().filter_map(|station| station.captures.first());
-    captures.take(MAX_FRAMES).map(|capture| shown_numbers(capture, notation)).collect()
+pub const fn decimals(notation: &PoseNotation, number_idx: usize) -> usize {
+    match (number_idx, notation.length_unit, notation.orientation, notation.angle_unit) {
+        (0..3, LengthUnit::Millimetres, ..) | (3.., _, OrientationForm::Angles, AngleUnit::Degrees) => 3,
+        (0..3, LengthUnit::Metres, ..) | (3.., _, OrientationForm::Angles, AngleUnit::Radians) => 6,
+        (3.., _, OrientationForm::QuaternionWxyz | OrientationForm::QuaternionXyzw, _) => 5,
+    }
 }
 
 /// What becomes of one pose when its numbers are read differently.
