@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 
 use handeye::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
 use handeye::geometry::{AngleOrder, Axis, Base, Flange, PoseConvention, PoseNotation, Tcp, Transform, Vec3, so3};
+use handeye::session::{self, Edit, EditRefusal, samples};
 use nalgebra::{Quaternion, UnitQuaternion};
 use proptest::prelude::*;
 use serde_json::Value;
@@ -219,6 +220,41 @@ fn triples(value: &Value) -> Vec<[f64; 3]> {
 fn quaternions(value: &Value) -> Vec<UnitQuaternion<f64>> {
     let unit = |[w, x, y, z]: [f64; 4]| UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
     numbers_of::<4>(value).into_iter().map(unit).collect()
+}
+
+#[test]
+fn a_tool_point_that_could_not_be_saved_is_refused() {
+    let sample = &samples::ALL[0];
+    let session = session::parse(sample.json.as_bytes(), sample.file_name).expect("a session");
+    let flange_from_tcp = Some(Transform::from_parts(Vec3::new(0.0, 0.0, 1e7), UnitQuaternion::identity()));
+    let notation = PoseNotation { flange_from_tcp, ..session.robot.notation };
+    for edit in [Edit::SwitchNotation(notation), Edit::Reinterpret(notation)] {
+        let refusal = edit.apply(&session).expect_err("ten kilometres");
+        assert!(matches!(refusal, EditRefusal::OutOfRange { .. }), "{refusal}");
+    }
+}
+
+#[test]
+fn switching_keeps_every_pose_and_reinterpreting_back_and_forth_as_well() {
+    let sample = samples::ALL.iter().find(|sample| sample.file_name == "few-rotations.json").expect("a sample");
+    let session = session::parse(sample.json.as_bytes(), sample.file_name).expect("a session");
+    for convention in PoseConvention::all() {
+        let notation = PoseNotation { length_unit: LengthUnit::Metres, ..PoseNotation::usual(convention) };
+        let switched = Edit::SwitchNotation(notation).apply(&session).expect("any notation");
+        assert_eq!(switched.stations, session.stations, "{}", convention.id);
+        let misread = PoseNotation::of(convention);
+        let wrong = Edit::Reinterpret(misread).apply(&session).expect("angles");
+        let again = Edit::Reinterpret(session.robot.notation).apply(&wrong).expect("angles");
+        for (was, is) in session.stations.iter().zip(&again.stations) {
+            for (was, is) in was.captures.iter().zip(&is.captures) {
+                let (was, is) = (&was.base_from_flange, &is.base_from_flange);
+                assert!(apart_deg(&was.rotation(), &is.rotation()) < ROUND_TRIP_DEG, "{}", convention.id);
+                assert!((was.translation_mm() - is.translation_mm()).norm() < 1e-9, "{}", convention.id);
+            }
+        }
+        let saved = session::to_json(&wrong);
+        assert_eq!(session::parse(saved.as_bytes(), "again.json"), Ok(wrong), "{}", convention.id);
+    }
 }
 
 #[test]

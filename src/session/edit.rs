@@ -175,7 +175,7 @@ impl Edit {
             Self::Remove(rows) => remove(&mut changed, rows)?,
             Self::Reorder(order) => reorder(&mut changed, order)?,
             Self::Setup(field) => set_field(&mut changed, field)?,
-            Self::SwitchNotation(notation) => changed.robot.notation = *notation,
+            Self::SwitchNotation(notation) => set_notation(&mut changed, notation)?,
             Self::Reinterpret(notation) => reinterpret(&mut changed, notation)?,
         }
         Ok(changed)
@@ -421,6 +421,14 @@ fn set_target(session: &mut Session, target: &Target) -> Result<(), EditRefusal>
     Ok(())
 }
 
+fn set_notation(session: &mut Session, notation: &PoseNotation) -> Result<(), EditRefusal> {
+    if let Some(flange_from_tcp) = &notation.flange_from_tcp {
+        all_within(&flange_from_tcp.translation_mm(), &limits::POSITION_MM)?;
+    }
+    session.robot.notation = *notation;
+    Ok(())
+}
+
 /// The numbers of each pose, as they are shown now, read in the other way.
 fn reinterpret(session: &mut Session, notation: &PoseNotation) -> Result<(), EditRefusal> {
     let shown = session.robot.notation;
@@ -435,8 +443,7 @@ fn reinterpret(session: &mut Session, notation: &PoseNotation) -> Result<(), Edi
             capture.written_angles = written_angles(&numbers, notation);
         }
     }
-    session.robot.notation = *notation;
-    Ok(())
+    set_notation(session, notation)
 }
 
 /// The numbers of a capture's pose: as they were typed where that is known, as near gimbal lock other angles mean the same.

@@ -95,7 +95,7 @@ pub const FLANGE: &str = "the flange";
 /// Choice.
 pub const TOOL_POINT: &str = "a tool point";
 /// Before the six numbers.
-pub const TOOL_IN_FLANGE: &str = "Tool point in the flange";
+pub const TOOL_IN_FLANGE: &str = "Tool point";
 /// Row of the form.
 pub const DIRECTION: &str = "Direction";
 /// Choice.
@@ -108,15 +108,13 @@ pub const OTHER_COUNT: &str = "The table has another count of numbers a pose";
 /// Column of the preview.
 pub const STATION: &str = "station";
 /// Column of the preview.
-pub const NUMBERS: &str = "numbers, unchanged";
-/// Column of the preview.
 pub const TURNS: &str = "turns by";
 /// Column of the preview.
 pub const MOVES: &str = "moves by";
 /// Column of the preview.
-pub const Z_NOW: &str = "its z now";
+pub const Z_NOW: &str = "z axis now";
 /// Column of the preview.
-pub const Z_THEN: &str = "its z then";
+pub const Z_THEN: &str = "z axis then";
 
 /// The button that makes the change.
 #[must_use]
@@ -124,10 +122,17 @@ pub fn reinterpret_poses(num_poses: usize) -> String {
     format!("Change {num_poses} pose{}", plural(num_poses))
 }
 
+/// Above the preview's table.
+#[must_use]
+pub fn numbers_stay(notation: &PoseNotation) -> String {
+    let (name, units) = (notation_name(notation), notation_units(notation));
+    format!("The numbers as the table shows them, {name} in {units}, and what becomes of their poses:")
+}
+
 /// How the preview names what it leaves out.
 #[must_use]
-pub fn more_poses(number: usize) -> String {
-    format!("and {number} more")
+pub fn more_stations(number: usize) -> String {
+    format!("and {number} more station{}", plural(number))
 }
 
 /// The pose of the first station, as it will be shown.

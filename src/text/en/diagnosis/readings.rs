@@ -20,7 +20,7 @@ pub fn pose_reading_in_full(reading: &PoseReading) -> String {
     let others: Vec<&str> = reading.makers().iter().skip(1).filter_map(|maker| maker.label.split(' ').next()).collect();
     let also = match others.split_at_checked(MAX_LISTED_MAKERS) {
         _ if others.is_empty() => String::new(),
-        Some((listed, rest)) if rest.len() > 1 => format!(", also {} and {} more", listed.join(", "), rest.len()),
+        Some((listed, rest)) if rest.len() > 1 => format!(", also {}, …", listed.join(", ")),
         _ => format!(", also {}", others.join(", ")),
     };
     match order {
@@ -34,8 +34,8 @@ pub fn pose_reading_in_full(reading: &PoseReading) -> String {
     }
 }
 
-/// Other makers of an order that are listed before the rest is only counted.
-const MAX_LISTED_MAKERS: usize = 3;
+/// Other makers of an order that are listed; `docs/conventions.md` has them all.
+const MAX_LISTED_MAKERS: usize = 2;
 
 /// The poses as the session has them.
 const AS_GIVEN: &str = "given";

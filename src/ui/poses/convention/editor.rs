@@ -12,7 +12,9 @@ use super::model::Draft;
 use super::picker;
 
 /// Room for the names of the rows, points.
-const NAMES_WIDTH: f32 = 96.0;
+const NAMES_WIDTH: f32 = 84.0;
+/// Room for the name of a convention, points.
+const MAX_NAME_WIDTH: f32 = 180.0;
 /// A tool is no longer than this, mm.
 const MAX_TOOL_MM: f64 = 1e4;
 
@@ -67,7 +69,7 @@ fn convention(ui: &mut Ui, draft: &mut Draft, search: &mut String) {
     let notation = *draft.without_tool();
     let angles = PoseNotation { orientation: OrientationForm::Angles, ..notation };
     row(ui, words::ANGLES_OF, |ui| {
-        if let Some(chosen) = picker::show(ui, words::ANGLES_OF, &angles, false, search) {
+        if let Some(chosen) = picker::show(ui, words::ANGLES_OF, MAX_NAME_WIDTH, &angles, false, search) {
             // The units are chosen in their own rows.
             draft.set(PoseNotation { convention: chosen.convention, ..notation });
         }
@@ -77,7 +79,7 @@ fn convention(ui: &mut Ui, draft: &mut Draft, search: &mut String) {
         let order = notation.convention.order;
         let mut chosen = order;
         let combo = ComboBox::from_id_salt("order of axes")
-            .width(120.0)
+            .width(108.0)
             .selected_text(words::axes_name(order))
             .show_ui(ui, |ui| {
                 for other in orders_turning_like(order) {
@@ -147,11 +149,14 @@ fn frame(ui: &mut Ui, draft: &mut Draft) {
                 for (idx, (name, number)) in fields.by_ref().take(count) {
                     let field = if idx < 3 {
                         let limit = MAX_TOOL_MM / length.in_mm();
-                        DragValue::new(number).range(-limit..=limit).speed(1.0 / length.in_mm()).suffix(length.symbol())
+                        DragValue::new(number)
+                            .range(-limit..=limit)
+                            .speed(1.0 / length.in_mm())
+                            .suffix(format!(" {}", length.symbol()))
                     } else {
                         let limit = 360.0 / angle.in_degrees();
                         let suffix =
-                            if angle == AngleUnit::Degrees { "°".to_owned() } else { angle.symbol().to_owned() };
+                            if angle == AngleUnit::Degrees { "°".to_owned() } else { format!(" {}", angle.symbol()) };
                         DragValue::new(number).range(-limit..=limit).speed(0.5 / angle.in_degrees()).suffix(suffix)
                     };
                     ui.label(theme::dim(ui, name));

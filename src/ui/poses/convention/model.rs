@@ -258,13 +258,13 @@ impl Camera {
     }
 }
 
-/// What part of the base's space is in the picture.
+/// What part of the base's space is in the picture, as the camera sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
-    /// Its middle, mm.
-    pub middle: Vec3,
-    /// Half of its size, mm.
-    pub radius_mm: f64,
+    /// Its middle: to the right and up, mm.
+    pub middle: [f64; 2],
+    /// Its size: to the right and up, mm.
+    pub size_mm: [f64; 2],
     /// Whether the base's origin is in it.
     pub has_base: bool,
 }
@@ -272,23 +272,32 @@ pub struct Extent {
 impl Extent {
     /// Around the frames, and around the base as well unless that would leave too little room for them.
     #[must_use]
-    pub fn of(frames: &[NamedFrame]) -> Self {
+    pub fn of(frames: &[NamedFrame], camera: &Camera) -> Self {
         /// The frames take up at least this part of the picture.
-        const LEAST_PART: f64 = 0.35;
-        /// Frames in one place are not drawn as if they were far apart, mm.
-        const LEAST_RADIUS_MM: f64 = 1.0;
-        let origins: Vec<Vec3> = frames.iter().map(|frame| frame.base_from_flange.translation_mm()).collect();
-        let around = |points: &[Vec3]| {
-            let least = points.iter().fold(Vec3::repeat(f64::INFINITY), |least, point| least.inf(point));
-            let most = points.iter().fold(Vec3::repeat(f64::NEG_INFINITY), |most, point| most.sup(point));
-            (0.5 * (least + most), 0.5 * (most - least).norm())
+        const LEAST_PART: f64 = 0.6;
+        /// Seen along a row of frames they would fill the picture: so much of their real extent counts in any case.
+        const LEAST_SEEN: f64 = 0.4;
+        let mut points: Vec<Vec3> = frames.iter().map(|frame| frame.base_from_flange.translation_mm()).collect();
+        let extent_mm = |points: &[Vec3]| {
+            let [least, most] = bounds(points);
+            (most - least).norm()
         };
-        let with_base: Vec<Vec3> = origins.iter().copied().chain([Vec3::zeros()]).collect();
-        let (middle, radius_mm) = around(&with_base);
-        let alone = around(&origins);
-        if origins.is_empty() || alone.1 >= LEAST_PART * radius_mm {
-            return Self { middle, radius_mm: radius_mm.max(LEAST_RADIUS_MM), has_base: true };
+        let alone_mm = extent_mm(&points);
+        points.push(Vec3::zeros());
+        let has_base = frames.is_empty() || alone_mm >= LEAST_PART * extent_mm(&points);
+        if !has_base {
+            points.pop();
         }
-        Self { middle: alone.0, radius_mm: alone.1.max(LEAST_RADIUS_MM), has_base: false }
+        let least_mm = (LEAST_SEEN * extent_mm(&points)).max(1.0);
+        let seen: Vec<Vec3> = points.iter().map(|point| camera.seen(*point)).collect();
+        let [least, most] = bounds(&seen);
+        let (middle, size) = (0.5 * (least + most), most - least);
+        Self { middle: [middle.x, middle.y], size_mm: [size.x.max(least_mm), size.y.max(least_mm)], has_base }
     }
+}
+
+fn bounds(points: &[Vec3]) -> [Vec3; 2] {
+    let least = points.iter().fold(Vec3::repeat(f64::INFINITY), |least, point| least.inf(point));
+    let most = points.iter().fold(Vec3::repeat(f64::NEG_INFINITY), |most, point| most.sup(point));
+    [least, most]
 }

@@ -53,15 +53,16 @@ impl<'a> Picture<'a> {
     fn new(ui: &Ui, rect: Rect, frames: &[NamedFrame], camera: &'a Camera) -> Self {
         let size = rect.width().min(rect.height());
         let arrow = (size * ARROW_PART).clamp(18.0, 44.0);
-        let extent = Extent::of(frames);
+        let extent = Extent::of(frames, camera);
         // Room for the arrows at the border, and for their letters.
-        let radius = (size * 0.5 - arrow - 14.0).max(8.0);
+        let room = (rect.size() - egui::Vec2::splat(2.0 * (arrow + 14.0))).max(vec2(16.0, 16.0));
+        let [width_mm, height_mm] = extent.size_mm.map(to_screen);
         Self {
             painter: ui.painter().with_clip_rect(rect.intersect(ui.clip_rect())),
             camera,
             extent,
             rect,
-            points_per_mm: radius / to_screen(extent.radius_mm),
+            points_per_mm: (room.x / width_mm).min(room.y / height_mm),
             arrow,
             colors: theme::axis_colors(ui),
             text: theme::palette(ui).text_dim,
@@ -69,18 +70,22 @@ impl<'a> Picture<'a> {
     }
 
     fn place(&self, in_base_mm: Vec3) -> Pos2 {
-        let seen = self.camera.seen(in_base_mm - self.extent.middle);
-        self.rect.center() + vec2(to_screen(seen.x), -to_screen(seen.y)) * self.points_per_mm
+        let seen = self.camera.seen(in_base_mm);
+        let [right, up] = self.extent.middle;
+        self.rect.center() + vec2(to_screen(seen.x - right), -to_screen(seen.y - up)) * self.points_per_mm
     }
 
     fn base(&self) {
-        let (origin, name) = if self.extent.has_base {
-            (self.place(Vec3::zeros()), words::BASE)
+        let length = self.arrow * BASE_FACTOR;
+        let corner = self.rect.left_bottom();
+        let (origin, name, below) = if self.extent.has_base {
+            let origin = self.place(Vec3::zeros());
+            (origin, words::BASE, origin + vec2(0.0, length + 4.0))
         } else {
-            (self.rect.left_bottom() + vec2(1.0, -1.0) * (self.arrow * BASE_FACTOR + 16.0), words::BASE_DIRECTIONS)
+            (corner + vec2(length + 12.0, -length - 22.0), words::BASE_DIRECTIONS, corner + vec2(10.0, -12.0))
         };
-        self.triad(origin, [Vec3::x(), Vec3::y(), Vec3::z()], self.arrow * BASE_FACTOR, 1.0);
-        self.label(origin, name);
+        self.triad(origin, [Vec3::x(), Vec3::y(), Vec3::z()], length, 1.0);
+        self.text(below, name, self.text);
     }
 
     fn frame(&self, frame: &NamedFrame) {
@@ -88,7 +93,8 @@ impl<'a> Picture<'a> {
         let axes = [Vec3::x(), Vec3::y(), Vec3::z()].map(|axis| rotation * axis);
         let origin = self.place(frame.base_from_flange.translation_mm());
         self.triad(origin, axes, self.arrow, 2.0);
-        self.label(origin, &frame.label);
+        self.painter.circle_filled(origin, 2.5, self.text);
+        self.text(origin + vec2(6.0, 8.0), &frame.label, self.text);
     }
 
     fn triad(&self, origin: Pos2, axes: [Vec3; 3], length: f32, width: f32) {
@@ -106,10 +112,9 @@ impl<'a> Picture<'a> {
         }
     }
 
-    fn label(&self, origin: Pos2, text: &str) {
+    fn text(&self, left: Pos2, text: &str, color: Color32) {
         let font = FontId::proportional(theme::SMALL_SIZE);
-        self.painter.circle_filled(origin, 2.5, self.text);
-        self.painter.text(origin + vec2(6.0, 8.0), Align2::LEFT_CENTER, text, font, self.text);
+        self.painter.text(left, Align2::LEFT_CENTER, text, font, color);
     }
 }
 

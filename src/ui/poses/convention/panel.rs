@@ -17,7 +17,12 @@ use super::{editor, paint, picker};
 /// Height of the picture's card below the table, points.
 const PICTURE_HEIGHT: f32 = 264.0;
 /// Width of the dialog, points.
-const DIALOG_WIDTH: f32 = 440.0;
+const DIALOG_WIDTH: f32 = 520.0;
+
+/// Below this width the bar keeps to its buttons, points.
+const NARROW_WIDTH: f32 = 760.0;
+/// Room for the other buttons of the bar, points.
+const BUTTONS_WIDTH: f32 = 340.0;
 
 /// What is open.
 #[derive(Debug, Default)]
@@ -50,24 +55,26 @@ pub fn bar(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut ConventionSt
 
 fn row(ui: &mut Ui, session: &Session, state: &mut ConventionState, commands: &mut Vec<Command>) {
     let notation = session.robot.notation;
+    let is_narrow = ui.available_width() < NARROW_WIDTH;
     ui.horizontal(|ui| {
         ui.label(theme::dim(ui, words::SHOWN_AS)).on_hover_text(words::SHOWN_AS_HINT);
-        if let Some(chosen) = picker::show(ui, words::SHOWN_AS, &notation, true, &mut state.search) {
+        let room = (ui.available_width() - BUTTONS_WIDTH).max(80.0);
+        if let Some(chosen) = picker::show(ui, words::SHOWN_AS, room, &notation, true, &mut state.search) {
             commands.push(Command::Edit { edit: Edit::SwitchNotation(chosen), gesture: None });
         }
-        chip(ui, &words::notation_units(&notation), &words::notation_units_hint(&notation));
-        if let Some(frame) = words::notation_frame(&notation) {
-            chip(ui, frame, words::notation_frame_hint(&notation));
+        // The bar at the top has them too.
+        if !is_narrow {
+            chip(ui, &words::notation_units(&notation), &words::notation_units_hint(&notation));
+            if let Some(frame) = words::notation_frame(&notation) {
+                chip(ui, frame, words::notation_frame_hint(&notation));
+            }
         }
         if ui.button(words::MORE).on_hover_text(words::SHOW_HINT).clicked() {
             state.shown_as = Some(ShownAs { draft: Draft::of(&notation), search: String::new() });
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            if ui
-                .add(Button::selectable(state.has_picture, words::PICTURE))
-                .on_hover_text(words::PICTURE_HINT)
-                .clicked()
-            {
+            let picture = Button::selectable(state.has_picture, words::PICTURE).frame_when_inactive(true);
+            if ui.add(picture).on_hover_text(words::PICTURE_HINT).clicked() {
                 state.has_picture = !state.has_picture;
             }
             if ui.button(words::REINTERPRET).on_hover_text(words::REINTERPRET_HINT).clicked() {

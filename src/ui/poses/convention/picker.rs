@@ -1,6 +1,6 @@
 //! The list of conventions behind a button, with a search.
 
-use egui::{Button, Popup, PopupCloseBehavior, Response, RichText, ScrollArea, TextEdit, Ui, WidgetInfo};
+use egui::{Button, Frame, Popup, PopupCloseBehavior, Response, RichText, ScrollArea, TextEdit, Ui, WidgetInfo, vec2};
 
 use crate::geometry::PoseNotation;
 use crate::text::conventions as words;
@@ -13,17 +13,23 @@ const WIDTH: f32 = 400.0;
 /// Height of the list, points.
 const HEIGHT: f32 = 400.0;
 
-/// A button with the notation's name; answers what is chosen from the list below it. `row` names the button for a screen
-/// reader.
+/// A button with the notation's name, cut where it would be wider than `max_width`; answers what is chosen from the list
+/// below it. `row` names the button for a screen reader.
 pub fn show(
     ui: &mut Ui,
     row: &str,
+    max_width: f32,
     notation: &PoseNotation,
     with_quaternions: bool,
     search: &mut String,
 ) -> Option<PoseNotation> {
     let name = words::notation_name(notation);
-    let button = ui.add(Button::new(format!("{name} ▾")));
+    let button = ui
+        .scope(|ui| {
+            ui.set_max_width(max_width);
+            ui.add(Button::new(format!("{name} ▾")).truncate())
+        })
+        .inner;
     button.widget_info(|| WidgetInfo::labeled(egui::Role::ComboBox, ui.is_enabled(), words::choice_name(row, name)));
     if button.clicked() {
         search.clear();
@@ -32,17 +38,23 @@ pub fn show(
     Popup::from_toggle_button_response(&button)
         .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
         .width(WIDTH)
+        .frame(Frame::popup(ui.style()).inner_margin(8))
         .show(|ui| {
             search_field(ui, search, button.clicked());
             ui.add_space(4.0);
             let entered = ui.input(|input| input.key_pressed(egui::Key::Enter));
             ScrollArea::vertical().max_height(HEIGHT).auto_shrink([false, true]).show(ui, |ui| {
+                ui.spacing_mut().item_spacing.y = 0.0;
+                ui.spacing_mut().interact_size.y = theme::ROW_HEIGHT;
+                ui.spacing_mut().button_padding = vec2(8.0, 2.0);
                 let groups = model::choices(search, with_quaternions);
                 if groups.is_empty() {
                     ui.label(theme::dim(ui, words::NOTHING_FOUND));
                 }
                 for (group_idx, (group, choices)) in groups.iter().enumerate() {
+                    ui.add_space(4.0);
                     ui.label(theme::strong(*group));
+                    ui.add_space(2.0);
                     for (idx, choice) in choices.iter().enumerate() {
                         let is_first = group_idx == 0 && idx == 0;
                         if entry(ui, choice, notation).clicked() || (entered && is_first) {

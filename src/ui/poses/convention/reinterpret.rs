@@ -1,6 +1,7 @@
 //! The dialog that reads the numbers differently, with what it would do to the first poses.
 
-use egui::{Align, Context, Frame, Grid, Id, Layout, Modal, RichText, Ui, UiBuilder, vec2};
+use egui::{Align, Context, Frame, Id, Layout, Modal, RichText, Ui, UiBuilder, vec2};
+use egui_extras::Column;
 
 use crate::app::Document;
 use crate::geometry::{PoseNotation, Vec3};
@@ -8,17 +9,18 @@ use crate::session::edit::shown_numbers;
 use crate::session::{EditRefusal, Session};
 use crate::text::conventions as words;
 use crate::ui::theme;
-use crate::ui::widgets::{fixed, number_text, primary_button};
+use crate::ui::widgets::tables::{self, head, number_cell, number_column, number_head};
+use crate::ui::widgets::{fixed, primary_button};
 
 use super::model::{self, Camera, Draft, Preview};
 use super::{editor, paint};
 
 /// Width of the dialog, points.
-const WIDTH: f32 = 920.0;
+const WIDTH: f32 = 968.0;
 /// Width of the form at the left, points.
-const FORM_WIDTH: f32 = 408.0;
+const FORM_WIDTH: f32 = 452.0;
 /// Height of the form and of the pictures, points.
-const FORM_HEIGHT: f32 = 268.0;
+const FORM_HEIGHT: f32 = 308.0;
 /// Rows of the preview's table; the pictures have a few more.
 const MAX_ROWS: usize = 6;
 
@@ -165,35 +167,61 @@ impl Reinterpretation {
 
 /// The first poses: their numbers, which stay, and what becomes of them.
 fn table(ui: &mut Ui, session: &Session, preview: &Preview) {
-    let notation = session.robot.notation;
-    Grid::new("reinterpreted poses").num_columns(6).spacing([20.0, 2.0]).min_row_height(20.0).show(ui, |ui| {
-        for head in [words::STATION, words::NUMBERS, words::TURNS, words::MOVES, words::Z_NOW, words::Z_THEN] {
-            ui.label(theme::dim(ui, head));
-        }
-        ui.end_row();
-        let captures = session.stations.iter().filter_map(|station| Some((station, station.captures.first()?)));
-        for ((station, capture), change) in captures.zip(&preview.changes).take(MAX_ROWS) {
-            ui.label(&station.label);
-            ui.label(number_text(numbers_text(&shown_numbers(capture, &notation), &notation)));
-            ui.label(number_text(format!("{}°", fixed(change.turns_deg, 2))));
-            ui.label(number_text(format!("{} mm", fixed(change.moves_mm, 1))));
-            ui.label(number_text(direction_text(change.z_now)));
-            ui.label(number_text(direction_text(change.z_then)));
-            ui.end_row();
-        }
-    });
+    let notation = &session.robot.notation;
+    ui.label(theme::dim(ui, words::numbers_stay(notation)));
+    ui.add_space(4.0);
+    let captures = session.stations.iter().filter_map(|station| Some((station, station.captures.first()?)));
+    let rows: Vec<_> = captures.zip(&preview.changes).take(MAX_ROWS).collect();
+    #[expect(clippy::cast_precision_loss, reason = "a few rows")]
+    let height = (rows.len() + 1) as f32 * theme::ROW_HEIGHT;
+    let (area, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), egui::Sense::hover());
+    let mut inside = ui.new_child(UiBuilder::new().max_rect(area).layout(Layout::top_down(Align::Min)));
+    inside.spacing_mut().item_spacing.x = 0.0;
+    tables::table(&mut inside, "reinterpreted poses")
+        .column(Column::exact(56.0).clip(true))
+        .columns(number_column(56.0), notation.num_numbers())
+        .column(Column::exact(76.0))
+        .column(Column::exact(80.0))
+        .columns(Column::exact(140.0), 2)
+        .header(theme::ROW_HEIGHT, |mut header| {
+            head(&mut header, words::STATION);
+            for name in ["x", "y", "z"].iter().chain(notation.orientation_names()) {
+                number_head(&mut header, name);
+            }
+            for name in [words::TURNS, words::MOVES, words::Z_NOW, words::Z_THEN] {
+                number_head(&mut header, name);
+            }
+        })
+        .body(|mut body| {
+            for ((station, capture), change) in rows {
+                body.row(theme::ROW_HEIGHT, |mut row| {
+                    row.set_overline(true);
+                    row.col(|ui| {
+                        ui.add_space(4.0);
+                        ui.label(&station.label);
+                    });
+                    for (idx, number) in shown_numbers(capture, notation).into_iter().enumerate() {
+                        number_cell(&mut row, fixed(number, model::decimals(notation, idx)));
+                    }
+                    number_cell(&mut row, format!("{}°", fixed(change.turns_deg, 2)));
+                    number_cell(&mut row, format!("{} mm", fixed(change.moves_mm, 1)));
+                    number_cell(&mut row, direction_text(change.z_now));
+                    number_cell(&mut row, direction_text(change.z_then));
+                });
+            }
+        });
     let num_more = session.stations.len().saturating_sub(MAX_ROWS);
     if num_more > 0 {
-        ui.label(theme::dim(ui, words::more_poses(num_more)));
+        ui.label(theme::dim(ui, words::more_stations(num_more)));
     }
 }
 
 /// The numbers of a pose, on one line.
 pub fn numbers_text(numbers: &[f64], notation: &PoseNotation) -> String {
     let texts = numbers.iter().enumerate().map(|(idx, number)| fixed(*number, model::decimals(notation, idx)));
-    texts.collect::<Vec<_>>().join("  ")
+    texts.collect::<Vec<_>>().join("   ")
 }
 
 fn direction_text(direction: Vec3) -> String {
-    [direction.x, direction.y, direction.z].map(|part| fixed(part, 2)).join("  ")
+    [direction.x, direction.y, direction.z].map(|part| fixed(part, 2)).join("   ")
 }
