@@ -4,7 +4,8 @@
 use std::fs;
 
 use handeye::calibrate::{Mount, Side, SideChoice};
-use handeye::geometry::{PoseConvention, Transform, Vec3, so3};
+use handeye::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
+use handeye::geometry::{PoseConvention, PoseNotation, Transform, Vec3, so3};
 use handeye::session::format::{load_with_notes, parse_with_notes};
 use handeye::session::{Edge, Reading, Session, SessionError, Target, check, load, parse, save, to_json};
 
@@ -43,7 +44,15 @@ const BROKEN: &[(&str, &str, &[&str])] = &[
     ("\"name\": \"cell 3\"", "\"name\": 3", &["name: found 3, expected text"]),
     ("\"name\": \"cell 3\",", "\"name\": \"cell 3\", \"name\": \"\",", &["line 4", "\"name\" stands twice"]),
     ("\"model\": \"FANUC\"", "\"model\": [1]", &["robot.model: found a list of 1, expected text"]),
-    ("\"pose_convention\": \"fanuc-wpr\"", "\"pose_convention\": \"fanuc\"", &["robot.pose_convention: found \"fanuc\"", "\"fanuc-wpr\", \"abb-ezeyex\"", "or \"epson-uvw\""]),
+    ("\"pose_convention\": \"fanuc-wpr\"", "\"pose_convention\": \"fanuc\"", &["robot.pose_convention: found \"fanuc\"", "\"fanuc-wpr\", \"abb-ezeyex\"", "\"epson-uvw\"", "or \"rotation-vector\""]),
+    ("\"orientation\": \"quaternion-xyzw\"", "\"orientation\": \"quaternion\"", &["robot.pose_notation.orientation: found \"quaternion\", expected \"angles\", \"quaternion-wxyz\" or \"quaternion-xyzw\""]),
+    ("\"angle_unit\": \"rad\"", "\"angle_unit\": 1", &["robot.pose_notation.angle_unit: found 1, expected \"deg\" or \"rad\""]),
+    ("\"length_unit\": \"m\"", "\"length_unit\": \"inch\"", &["robot.pose_notation.length_unit: found \"inch\", expected \"mm\" or \"m\""]),
+    ("\"inverse\": true", "\"inverse\": \"yes\"", &["robot.pose_notation.inverse: found \"yes\", expected true or false"]),
+    ("[-4, 0, 120.5]", "[-4, 0, 1e7]", &["robot.pose_notation.flange_from_tcp.translation_mm[2]: found 10000000"]),
+    ("[0.8, 0, 0, 0.6]", "[0.8, 0, 0, 0]", &["robot.pose_notation.flange_from_tcp.quaternion_wxyz: found a quaternion of norm 0.800000"]),
+    ("\"flange_from_tcp\": {", "\"flange_from_tcp\": 4, \"x\": {", &["robot.pose_notation.flange_from_tcp: found 4"]),
+    ("\"pose_notation\": {", "\"pose_notation\": \"m\", \"x\": {", &["robot.pose_notation: found \"m\", expected an object"]),
     ("\"position_std_mm\": 0.02", "\"position_std_mm\": 0", &["robot.position_std_mm: found 0, expected a standard deviation in mm"]),
     ("\"position_std_mm\": 0.02", "\"position_std_mm\": -0.02", &["robot.position_std_mm: found -0.02"]),
     ("\"orientation_std_deg\": 0.005", "\"orientation_std_deg\": 400", &["robot.orientation_std_deg: found 400"]),
@@ -53,9 +62,9 @@ const BROKEN: &[(&str, &str, &[&str])] = &[
     ("\"radius_mm\": 15.0", "\"radius_mm\": -15", &["target.radius_mm: found -15, expected a ball's radius in mm from 0.001 to 10000"]),
     ("\"radius_mm\": 15.0", "\"radius_mm\": 0", &["target.radius_mm: found 0"]),
     ("\"radius_mm\": 15.0", "\"radius_mm\": 1e300", &["target.radius_mm: found 1e+300"]),
-    ("\"radius_mm\": 15.0", "\"radius_mm\": 1e999", &["line 8, column", "number out of range"]),
-    ("\"radius_mm\": 15.0", "\"radius_mm\": NaN", &["line 8, column", "found `NaN"]),
-    ("\"radius_mm\": 15.0", "\"radius_mm\": Infinity", &["line 8, column", "found `Infinity"]),
+    ("\"radius_mm\": 15.0", "\"radius_mm\": 1e999", &["line 11, column", "number out of range"]),
+    ("\"radius_mm\": 15.0", "\"radius_mm\": NaN", &["line 11, column", "found `NaN"]),
+    ("\"radius_mm\": 15.0", "\"radius_mm\": Infinity", &["line 11, column", "found `Infinity"]),
     ("\"radius_mm\": 15.0", "\"radius_mm\": null", &["target.radius_mm: found nothing, expected a ball's radius"]),
     ("\"kind\": \"ball\"", "\"kind\": \"cube\"", &["target.kind: found \"cube\"", "\"ball\", \"right-angle-plate\", \"point\" or \"rgbd\""]),
     ("\"kind\": \"ball\", ", "", &["target.kind: found nothing"]),
@@ -111,7 +120,7 @@ const BROKEN: &[(&str, &str, &[&str])] = &[
     ("\"error_from_first_mm\": [[0, 0, 0], [3, 3, 3]]", "\"error_from_first_mm\": [[0, 0, 0], [3, 3]]", &["published.error_from_first_mm[1]: found a list of 2"]),
     ("\"ball_in_base_mm\": [0, 0, 0] }", "\"ball\": [0, 0, 0] }", &["truth.ball_in_base_mm: found nothing"]),
     ("\"truth\": { \"flange_from_sensor\":", "\"truth\": { \"sensor\":", &["truth.flange_from_sensor: found nothing"]),
-    ("\"truth\": {", "\"truth\": [", &["line 25, column 34: found `: { \"translation_mm\"", "expected JSON: expected `,` or `]`"]),
+    ("\"truth\": {", "\"truth\": [", &["line 28, column 34: found `: { \"translation_mm\"", "expected JSON: expected `,` or `]`"]),
     ("\"notes\": \"line 1\\nline 2\",", "\"notes\": \"line 1\\nline 2\"", &["line 6, column 3: found `\"robot\"", "expected JSON: expected `,` or `}`"]),
 ];
 
@@ -153,6 +162,22 @@ fn the_valid_session_is_read_as_written() {
     assert_eq!(session.notes, "line 1\nline 2");
     assert_eq!(session.target, Target::ball(15.0));
     assert_eq!(session.robot.orientation_std_deg, Some(0.005));
+    let turn = so3::exp(Vec3::z() * 2.0 * 0.6_f64.asin());
+    let notation = session.robot.notation;
+    assert_eq!(
+        PoseNotation { flange_from_tcp: None, ..notation },
+        PoseNotation {
+            convention: PoseConvention::default_convention(),
+            orientation: OrientationForm::QuaternionXyzw,
+            angle_unit: AngleUnit::Radians,
+            length_unit: LengthUnit::Metres,
+            flange_from_tcp: None,
+            is_inverse: true,
+        }
+    );
+    let flange_from_tcp = notation.flange_from_tcp.expect("there is a tool point");
+    assert_eq!(flange_from_tcp.translation_mm(), Vec3::new(-4.0, 0.0, 120.5));
+    assert!(flange_from_tcp.rotation().angle_to(&turn) < 1e-15);
     assert_eq!(session.stations[0].side, SideChoice::Given(Side::Plus));
     assert!(!session.stations[0].enabled && session.stations[1].enabled);
     assert_eq!(session.stations[1].label, "2", "the label is its number by default");
@@ -216,6 +241,8 @@ fn unknown_fields_survive_at_every_level() {
     let objects = [
         "\"format\": ",
         "\"model\": \"FANUC\"",
+        "\"orientation\": \"quat",
+        "\"translation_mm\": [-4",
         "\"model\": \"Keyence\"",
         "\"kind\": ",
         "\"label\": ",
@@ -248,6 +275,10 @@ fn unknown_fields_survive_at_every_level() {
 fn the_text_is_stable_and_readable() {
     let saved = to_json(&valid());
     for line in [
+        "  \"robot\": { \"model\": \"FANUC\", \"pose_convention\": \"fanuc-wpr\", \
+         \"pose_notation\": { \"orientation\": \"quaternion-xyzw\", \"angle_unit\": \"rad\", \"length_unit\": \"m\", \
+         \"flange_from_tcp\": { \"translation_mm\": [-4, 0, 120.5], \"quaternion_wxyz\": [0.8, 0, 0, 0.6] }, \"inverse\": true }, \
+         \"position_std_mm\": 0.02, \"orientation_std_deg\": 0.005 },",
         "  \"target\": { \"kind\": \"ball\", \"radius_mm\": 15 },",
         "    { \"label\": \"first\", \"enabled\": false, \"side\": \"+\",",
         "      \"captures\": [",
@@ -259,6 +290,9 @@ fn the_text_is_stable_and_readable() {
         assert!(saved.lines().any(|found| found == line), "{line:?} is no line of\n{saved}");
     }
     assert_eq!(to_json(&parse(saved.as_bytes(), "again.json").expect("valid")), saved);
+    let mut usual = valid();
+    usual.robot.notation = PoseNotation::of(usual.robot.notation.convention);
+    assert!(!to_json(&usual).contains("pose_notation"), "what is usual is not written");
 }
 
 #[test]

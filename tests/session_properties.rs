@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use handeye::calibrate::{Mount, Side, SideChoice};
+use handeye::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
 use handeye::geometry::{Base, Flange, PoseConvention, PoseNotation, Profile, Transform, Vec3, so3};
 use handeye::session::{
     Capture, Published, Reading, Robot, Sensor, Session, Station, Target, Truth, WrittenAngles, parse, to_json,
@@ -24,6 +25,25 @@ fn pose() -> impl Strategy<Value = Transform<Base, Flange>> {
     })
 }
 
+fn convention() -> impl Strategy<Value = &'static PoseConvention> {
+    prop::sample::select(PoseConvention::all().collect::<Vec<_>>())
+}
+
+fn notation() -> impl Strategy<Value = PoseNotation> {
+    let orientations = [OrientationForm::Angles, OrientationForm::QuaternionWxyz, OrientationForm::QuaternionXyzw];
+    let tool_point = prop::option::of(pose().prop_map(|pose| Transform::from_rigid(*pose.rigid())));
+    (convention(), prop::sample::select(orientations.to_vec()), any::<[bool; 3]>(), tool_point).prop_map(
+        |(convention, orientation, [in_radians, in_metres, is_inverse], flange_from_tcp)| PoseNotation {
+            convention,
+            orientation,
+            angle_unit: if in_radians { AngleUnit::Radians } else { AngleUnit::Degrees },
+            length_unit: if in_metres { LengthUnit::Metres } else { LengthUnit::Millimetres },
+            flange_from_tcp,
+            is_inverse,
+        },
+    )
+}
+
 fn reading() -> impl Strategy<Value = Reading> {
     let point = prop::array::uniform3(-1e5..1e5).prop_map(|point| Reading::Point(Vec3::from(point)));
     let coordinate = prop_oneof![-1e5..1e5, Just(0.0), Just(-1e-300), Just(1e-9), Just(0.1)];
@@ -35,8 +55,8 @@ fn reading() -> impl Strategy<Value = Reading> {
 }
 
 fn station() -> impl Strategy<Value = Station> {
-    let written = (prop::array::uniform3(-36_000.0..36_000.0), 0..PoseConvention::ALL.len())
-        .prop_map(|(angles_deg, idx)| WrittenAngles { angles_deg, convention: &PoseConvention::ALL[idx] });
+    let written = (prop::array::uniform3(-36_000.0..36_000.0), convention())
+        .prop_map(|(angles_deg, convention)| WrittenAngles { angles_deg, convention });
     let capture = (pose(), prop::option::of(written), reading(), prop::option::of(-1e3..1e3)).prop_map(
         |(base_from_flange, written_angles, reading, step_mm)| Capture {
             base_from_flange,
@@ -63,7 +83,7 @@ prop_compose! {
         name in any::<String>(),
         notes in any::<String>(),
         position_std_mm in prop::option::of(1e-3..1.0),
-        convention_idx in 0..PoseConvention::ALL.len(),
+        notation in notation(),
         radius_mm in 1e-3..1e4,
         is_fixed in any::<bool>(),
         mut stations in prop::collection::vec(station(), 0..4),
@@ -83,7 +103,7 @@ prop_compose! {
         Session {
             name,
             notes,
-            robot: Robot { position_std_mm, notation: PoseNotation::of(&PoseConvention::ALL[convention_idx]), ..Robot::default() },
+            robot: Robot { position_std_mm, notation, ..Robot::default() },
             sensor: Sensor::default(),
             target: Target::Ball { radius_mm, radius_std_mm: position_std_mm },
             mount: if is_fixed { Mount::Fixed } else { Mount::OnFlange },

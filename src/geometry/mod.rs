@@ -11,8 +11,10 @@
 //!
 //! This floor is pure: no I/O, no clock, no randomness.
 
+mod angle_order;
 pub mod convention;
 pub mod frame;
+mod makers;
 pub mod notation;
 pub mod profile;
 pub mod se3;
@@ -20,7 +22,8 @@ pub mod so3;
 pub mod stats;
 pub mod transform;
 
-pub use convention::{AngleOrder, PoseConvention};
+pub use angle_order::{AngleOrder, Axis};
+pub use convention::PoseConvention;
 pub use frame::{Base, Flange, Frame, Sensor, Tcp};
 pub use notation::PoseNotation;
 pub use profile::Profile;

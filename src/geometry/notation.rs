@@ -141,6 +141,12 @@ impl PoseNotation {
         }
     }
 
+    /// The flange in the base as the maker's pendant shows it.
+    #[must_use]
+    pub const fn usual(convention: &'static PoseConvention) -> Self {
+        Self { angle_unit: convention.usual_angle_unit, ..Self::of(convention) }
+    }
+
     /// Whether the angles written are those of the flange in the base: then they can be kept beside the rotation.
     #[must_use]
     pub fn writes_angles_of_the_flange(&self) -> bool {
@@ -186,10 +192,11 @@ impl PoseNotation {
         };
         let written = Transform::<Base, Tcp>::from_parts(translation_mm, rotation);
         let base_from_tcp = if self.is_inverse { Transform::from_rigid(written.rigid().inverse()) } else { written };
-        Ok(match &self.flange_from_tcp {
+        let base_from_flange: Transform<Base, Flange> = match &self.flange_from_tcp {
             Some(flange_from_tcp) => base_from_tcp * flange_from_tcp.inverse(),
             None => Transform::from_rigid(*base_from_tcp.rigid()),
-        })
+        };
+        Ok(Transform::from_parts(base_from_flange.translation_mm(), upper_half(base_from_flange.rotation())))
     }
 
     /// The numbers of a pose.
@@ -222,9 +229,12 @@ fn unit_quaternion([w, x, y, z]: [f64; 4]) -> Result<UnitQuaternion<f64>, NotAPo
     if (norm - 1.0).abs() > QUATERNION_NORM_TOLERANCE {
         return Err(NotAPose::QuaternionNorm { norm, tolerance: QUATERNION_NORM_TOLERANCE });
     }
-    let unit = UnitQuaternion::new_normalize(quaternion);
-    // Of the two quaternions of a rotation the one that files hold.
-    Ok(if unit.w < 0.0 { UnitQuaternion::new_unchecked(-unit.into_inner()) } else { unit })
+    Ok(UnitQuaternion::new_normalize(quaternion))
+}
+
+/// Of the two quaternions of a rotation the one that files hold, so that a pose is the same after it was saved.
+fn upper_half(rotation: UnitQuaternion<f64>) -> UnitQuaternion<f64> {
+    if rotation.w < 0.0 { UnitQuaternion::new_unchecked(-rotation.into_inner()) } else { rotation }
 }
 
 #[cfg(test)]

@@ -183,10 +183,7 @@ impl Edit {
             Self::Remove(rows) => remove(session, rows),
             Self::Reorder(order) => reorder(session, order),
             Self::Setup(field) => set_field(session, field),
-            Self::SwitchNotation(notation) => {
-                session.robot.notation = *notation;
-                Ok(())
-            }
+            Self::SwitchNotation(notation) => set_notation(session, notation),
             Self::Reinterpret(notation) => reinterpret(session, notation),
             Self::Several(edits) => edits.iter().try_for_each(|edit| edit.change(session)),
         }
@@ -432,6 +429,14 @@ fn set_target(session: &mut Session, target: &Target) -> Result<(), EditRefusal>
     Ok(())
 }
 
+fn set_notation(session: &mut Session, notation: &PoseNotation) -> Result<(), EditRefusal> {
+    if let Some(flange_from_tcp) = &notation.flange_from_tcp {
+        all_within(&flange_from_tcp.translation_mm(), &limits::POSITION_MM)?;
+    }
+    session.robot.notation = *notation;
+    Ok(())
+}
+
 /// The numbers of each pose, as they are shown now, read in the other way.
 fn reinterpret(session: &mut Session, notation: &PoseNotation) -> Result<(), EditRefusal> {
     let shown = session.robot.notation;
@@ -446,8 +451,7 @@ fn reinterpret(session: &mut Session, notation: &PoseNotation) -> Result<(), Edi
             capture.written_angles = written_angles(&numbers, notation);
         }
     }
-    session.robot.notation = *notation;
-    Ok(())
+    set_notation(session, notation)
 }
 
 /// The numbers of a capture's pose: as they were typed where that is known, as near gimbal lock other angles mean the same.

@@ -33,6 +33,16 @@ pub const OUTLIER: Color32 = Color32::from_rgb(0xd0, 0x39, 0x2b);
 /// Points elsewhere: drawn faint.
 pub const UNUSED: Color32 = Color32::from_rgb(0xb4, 0xbb, 0xc5);
 
+/// The colours of the axes x, y and z of a frame; letters stand beside them.
+#[must_use]
+pub fn axis_colors(ui: &egui::Ui) -> [Color32; 3] {
+    if ui.visuals().dark_mode {
+        [Color32::from_rgb(0xf2, 0x7a, 0x6d), Color32::from_rgb(0x4f, 0xc4, 0x8a), Color32::from_rgb(0x6f, 0xa3, 0xff)]
+    } else {
+        [Color32::from_rgb(0xc2, 0x2f, 0x22), Color32::from_rgb(0x0f, 0x86, 0x4e), Color32::from_rgb(0x1f, 0x5f, 0xe0)]
+    }
+}
+
 /// The colours of one theme.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Palette {

@@ -5,8 +5,8 @@ use egui::{Align, Align2, Button, Layout, MenuBar, TextStyle, Ui, UiBuilder, con
 use crate::app::Workbench;
 use crate::session::samples;
 use crate::text::document::READ_ONLY;
-use crate::text::shell as words;
 use crate::text::start::sample_lesson;
+use crate::text::{conventions, shell as words};
 
 use super::actions::Action;
 use super::persisted::{Persisted, ThemeChoice};
@@ -106,11 +106,15 @@ fn right_side(ui: &mut Ui, workbench: &Workbench, actions: &mut Vec<Action>) -> 
         }
     }
     if let Some(document) = workbench.document() {
-        let convention = document.session.robot.notation.convention;
+        let notation = &document.session.robot.notation;
         ui.add_space(8.0);
-        widgets::chip(ui, words::UNITS, words::UNITS_HINT);
+        widgets::chip(ui, &conventions::notation_units(notation), &conventions::notation_units_hint(notation));
+        if let Some(frame) = conventions::notation_frame(notation) {
+            ui.add_space(8.0);
+            widgets::chip(ui, frame, conventions::notation_frame_hint(notation));
+        }
         ui.add_space(8.0);
-        widgets::chip(ui, convention.label, &words::convention_hint(convention.formula));
+        widgets::chip(ui, conventions::notation_name(notation), &conventions::notation_hint(notation));
     }
     ui.cursor().right()
 }

@@ -92,7 +92,7 @@ fn written_order(session: &Session, sections: &[Section]) -> Option<AngleOrder> 
 /// numbers and the same list backwards are read alike, so one of them is enough.
 fn orders_read(session: &Session) -> Vec<AngleOrder> {
     let mut orders = vec![session.robot.notation.convention.order];
-    for convention in PoseConvention::ALL {
+    for convention in PoseConvention::MAKERS {
         let order = convention.order;
         if !orders.contains(&order) && !orders.contains(&order.backwards()) {
             orders.push(order);

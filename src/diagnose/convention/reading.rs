@@ -170,25 +170,30 @@ impl PoseReading {
         }
     }
 
-    /// Reads the poses of a session in this way. Written angles stay where they still say what the rotation is and a maker
-    /// writes them so, and so does the robot's convention.
+    /// Reads the poses of a session in this way. Written angles stay where they still say what the rotation is. They are
+    /// shown as before, but in an order that is found to be the true one, and the right way round.
     pub fn apply(&self, session: &mut Session) {
-        let maker = self.makers().into_iter().find(|maker| maker.id == session.robot.notation.convention.id);
-        let maker = maker.or_else(|| self.makers().first().copied());
+        let notation = &mut session.robot.notation;
+        if let Some(order) = self.angle_order().filter(|order| *order != notation.convention.order) {
+            let maker = PoseConvention::of_order(order).next();
+            notation.convention = maker.unwrap_or_else(|| PoseConvention::neutral(order));
+        }
+        if self.inversion == Inversion::WholePose {
+            // Numbers of the base in the flange that turn out to be those of the flange in the base.
+            notation.is_inverse = false;
+        }
+        let convention = notation.convention;
         for (station_idx, station) in session.stations.iter_mut().enumerate() {
             let poses: Vec<Rigid> =
                 (0..station.captures.len()).map(|idx| self.pose(station, station_idx, idx)).collect();
             for (capture, pose) in station.captures.iter_mut().zip(poses) {
                 capture.base_from_flange = Transform::from_rigid(pose);
-                capture.written_angles = self.written(capture.written_angles, maker);
+                capture.written_angles = self.written(capture.written_angles, convention);
             }
-        }
-        if let Some(maker) = maker {
-            session.robot.notation.convention = maker;
         }
     }
 
-    fn written(&self, written: Option<WrittenAngles>, maker: Option<&'static PoseConvention>) -> Option<WrittenAngles> {
+    fn written(&self, written: Option<WrittenAngles>, convention: &'static PoseConvention) -> Option<WrittenAngles> {
         if self.inversion != Inversion::AsGiven {
             return None;
         }
@@ -197,7 +202,7 @@ impl PoseReading {
             RotationReading::Quaternion(_) => None,
             RotationReading::Angles(angles) => {
                 let angles_deg = written?.angles_deg.map(|angle| angle * angles.unit.factor());
-                Some(WrittenAngles { angles_deg, convention: maker? })
+                Some(WrittenAngles { angles_deg, convention })
             }
         }
     }

@@ -1,5 +1,6 @@
 //! The words of the session format: fields at every level, and the values that are words.
 
+use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
 use crate::session::model::Target;
 
 pub(super) const FORMAT: &str = "handeye-session";
@@ -12,9 +13,24 @@ pub(super) const ON_FLANGE: &str = "on-flange";
 pub(super) const FIXED: &str = "fixed";
 pub(super) const AUTO: &str = "auto";
 
+pub(super) const ORIENTATIONS: &[(&str, OrientationForm)] = &[
+    ("angles", OrientationForm::Angles),
+    ("quaternion-wxyz", OrientationForm::QuaternionWxyz),
+    ("quaternion-xyzw", OrientationForm::QuaternionXyzw),
+];
+pub(super) const ANGLE_UNITS: &[(&str, AngleUnit)] = &[("deg", AngleUnit::Degrees), ("rad", AngleUnit::Radians)];
+pub(super) const LENGTH_UNITS: &[(&str, LengthUnit)] = &[("mm", LengthUnit::Millimetres), ("m", LengthUnit::Metres)];
+
+/// The word for a value.
+pub(super) fn word_of<T: Copy + PartialEq>(choices: &[(&'static str, T)], value: T) -> &'static str {
+    choices.iter().find(|(_, choice)| *choice == value).map_or("", |(word, _)| word)
+}
+
 const SESSION: &[&str] =
     &["format", "version", "name", "notes", "robot", "sensor", "target", "mount", "stations", "published"];
-pub(super) const ROBOT: &[&str] = &["model", "pose_convention", "position_std_mm", "orientation_std_deg"];
+pub(super) const ROBOT: &[&str] =
+    &["model", "pose_convention", "pose_notation", "position_std_mm", "orientation_std_deg"];
+pub(super) const NOTATION: &[&str] = &["orientation", "angle_unit", "length_unit", "flange_from_tcp", "inverse"];
 pub(super) const SENSOR: &[&str] = &["model", "profile_std_mm", "reference_distance_mm"];
 pub(super) const STATION: &[&str] = &["label", "enabled", "side", "edge", "captures"];
 pub(super) const CAPTURE: &[&str] = &["base_from_flange", "profile", "point_mm", "step"];

@@ -71,7 +71,7 @@ pub(super) fn session(root: &Object<'_>, mended: &mut Mended) -> Result<Session,
     Ok(Session {
         name: root.text_or_empty("name")?,
         notes: root.text_or_empty("notes")?,
-        robot: root.optional("robot").map_or_else(|| Ok(Robot::default()), |cursor| robot(&cursor))?,
+        robot: root.optional("robot").map_or_else(|| Ok(Robot::default()), |cursor| robot(&cursor, mended))?,
         sensor: root.optional("sensor").map_or_else(|| Ok(Sensor::default()), |cursor| sensor(&cursor))?,
         mount: root.optional("mount").map_or(Ok(Mount::default()), |cursor| {
             cursor.one_of(&[(names::ON_FLANGE, Mount::OnFlange), (names::FIXED, Mount::Fixed)])
@@ -84,18 +84,50 @@ pub(super) fn session(root: &Object<'_>, mended: &mut Mended) -> Result<Session,
     })
 }
 
-fn robot(cursor: &Cursor<'_>) -> Result<Robot, Refusal> {
+fn robot(cursor: &Cursor<'_>, mended: &mut Mended) -> Result<Robot, Refusal> {
     let object = cursor.object("an object that describes the robot")?;
+    let mut unknown = object.unknown(names::ROBOT);
     Ok(Robot {
         model: object.text_or_empty("model")?,
-        notation: PoseNotation::of(
-            object
-                .optional("pose_convention")
-                .map_or_else(|| Ok(PoseConvention::default_convention()), |cursor| convention(&cursor))?,
-        ),
+        notation: notation(&object, &mut unknown, mended)?,
         position_std_mm: object.optional_number("position_std_mm", &limits::LENGTH_STD_MM)?,
         orientation_std_deg: object.optional_number("orientation_std_deg", &limits::ORIENTATION_STD_DEG)?,
-        unknown: object.unknown(names::ROBOT),
+        unknown,
+    })
+}
+
+/// The convention, with what else differs from millimetres and degrees of the flange in the base.
+fn notation(robot: &Object<'_>, unknown: &mut UnknownFields, mended: &mut Mended) -> Result<PoseNotation, Refusal> {
+    let convention = robot
+        .optional("pose_convention")
+        .map_or_else(|| Ok(PoseConvention::default_convention()), |cursor| convention(&cursor))?;
+    let usual = PoseNotation::of(convention);
+    let Some(cursor) = robot.optional("pose_notation") else {
+        return Ok(usual);
+    };
+    let object = cursor.object("an object that says in which numbers poses are shown")?;
+    let mut unknown_here = object.unknown(names::NOTATION);
+    let flange_from_tcp = match object.optional("flange_from_tcp") {
+        // What the tool point was written in is of no use to anyone.
+        Some(_) => Some(pose(&object, "flange_from_tcp", &mut unknown_here, mended)?.0),
+        None => None,
+    };
+    if !unknown_here.is_empty() {
+        unknown.insert("pose_notation".to_owned(), unknown_here.into());
+    }
+    Ok(PoseNotation {
+        convention,
+        orientation: object
+            .optional("orientation")
+            .map_or(Ok(usual.orientation), |cursor| cursor.one_of(names::ORIENTATIONS))?,
+        angle_unit: object
+            .optional("angle_unit")
+            .map_or(Ok(usual.angle_unit), |cursor| cursor.one_of(names::ANGLE_UNITS))?,
+        length_unit: object
+            .optional("length_unit")
+            .map_or(Ok(usual.length_unit), |cursor| cursor.one_of(names::LENGTH_UNITS))?,
+        flange_from_tcp,
+        is_inverse: object.optional("inverse").map_or(Ok(usual.is_inverse), |cursor| cursor.boolean())?,
     })
 }
 
@@ -110,8 +142,12 @@ fn sensor(cursor: &Cursor<'_>) -> Result<Sensor, Refusal> {
 }
 
 fn convention(cursor: &Cursor<'_>) -> Result<&'static PoseConvention, Refusal> {
-    let expected = || listed(PoseConvention::ALL.iter().map(|convention| convention.id));
-    PoseConvention::by_id(cursor.text(&expected())?).ok_or_else(|| cursor.refuse(expected()))
+    let expected = known_conventions();
+    PoseConvention::by_id(cursor.text(&expected)?).ok_or_else(|| cursor.refuse(expected))
+}
+
+fn known_conventions() -> String {
+    listed(PoseConvention::all().map(|convention| convention.id))
 }
 
 fn target(root: &Object<'_>) -> Result<(Target, UnknownFields), Refusal> {
@@ -305,10 +341,9 @@ fn written_beside_quaternion(pose: &Object<'_>, unknown: &mut UnknownFields) -> 
 }
 
 fn written_angles(angles: &Cursor<'_>, object: &Object<'_>) -> Result<WrittenAngles, Refusal> {
-    let known = listed(PoseConvention::ALL.iter().map(|convention| convention.id));
     Ok(WrittenAngles {
         angles_deg: angles.array::<3>(&limits::ANGLE_DEG)?,
-        convention: convention(&object.required("convention", &known)?)?,
+        convention: convention(&object.required("convention", &known_conventions())?)?,
     })
 }
 

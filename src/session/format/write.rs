@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde_json::Value;
 
 use crate::calibrate::{Mount, SideChoice};
-use crate::geometry::{Frame, Profile, Transform, Vec3};
+use crate::geometry::{Frame, PoseNotation, Profile, Transform, Vec3};
 use crate::session::model::{
     Capture, Edge, Published, Reading, Robot, Sensor, Session, Station, Target, Truth, UnknownFields, WrittenAngles,
 };
@@ -58,9 +58,38 @@ fn robot(out: &mut Writer, robot: &Robot) {
     out.open(Layout::Line);
     out.field("model").text(&robot.model);
     out.field("pose_convention").text(robot.notation.convention.id);
+    let unknown = nested(&robot.unknown, "pose_notation");
+    if unknown.is_some() || robot.notation != PoseNotation::of(robot.notation.convention) {
+        out.field("pose_notation");
+        notation(out, &robot.notation, unknown);
+    }
     out.optional_number("position_std_mm", robot.position_std_mm);
     out.optional_number("orientation_std_deg", robot.orientation_std_deg);
     out.unknown(&robot.unknown, names::ROBOT);
+    out.close();
+}
+
+/// What differs from millimetres and degrees of the flange in the base.
+fn notation(out: &mut Writer, notation: &PoseNotation, unknown: Option<&UnknownFields>) {
+    let usual = PoseNotation::of(notation.convention);
+    out.open(Layout::Line);
+    if notation.orientation != usual.orientation {
+        out.field("orientation").text(names::word_of(names::ORIENTATIONS, notation.orientation));
+    }
+    if notation.angle_unit != usual.angle_unit {
+        out.field("angle_unit").text(names::word_of(names::ANGLE_UNITS, notation.angle_unit));
+    }
+    if notation.length_unit != usual.length_unit {
+        out.field("length_unit").text(names::word_of(names::LENGTH_UNITS, notation.length_unit));
+    }
+    if let Some(flange_from_tcp) = &notation.flange_from_tcp {
+        out.field("flange_from_tcp");
+        pose(out, flange_from_tcp, None, unknown.and_then(|unknown| nested(unknown, "flange_from_tcp")));
+    }
+    if notation.is_inverse != usual.is_inverse {
+        out.field("inverse").raw("true");
+    }
+    out.nested_unknown(unknown, names::NOTATION);
     out.close();
 }
 

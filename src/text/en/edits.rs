@@ -3,6 +3,7 @@
 use crate::session::edit::{CellValue, Edit, Row, SetupField};
 use crate::session::{Place, Session};
 
+use super::conventions::notation_in_full;
 use super::plural;
 
 /// The edit's name, as it follows "Undo: ".
@@ -15,8 +16,8 @@ pub fn edit_label(edit: &Edit, session: &Session) -> String {
         Edit::Remove(rows) => format!("delete {}", rows_name(rows, session)),
         Edit::Reorder(_) => "reorder stations".to_owned(),
         Edit::Setup(field) => format!("change {}", field_name(field)),
-        Edit::SwitchNotation(notation) => format!("show poses as {}", notation.convention.label),
-        Edit::Reinterpret(notation) => format!("read the same numbers as {}", notation.convention.label),
+        Edit::SwitchNotation(notation) => format!("show poses as {}", notation_in_full(notation)),
+        Edit::Reinterpret(notation) => format!("read the same numbers as {}", notation_in_full(notation)),
         Edit::Several(edits) => several_label(edits, session),
     }
 }

@@ -4,6 +4,7 @@ pub mod arcs;
 pub mod check;
 pub mod cli;
 pub mod compare;
+pub mod conventions;
 pub mod diagnosis;
 pub mod diagnosis_panel;
 pub mod document;

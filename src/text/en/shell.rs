@@ -58,11 +58,6 @@ pub fn title_with(title: &str, remark: &str) -> String {
     format!("{title} ({remark})")
 }
 
-/// The units in use.
-pub const UNITS: &str = "mm · °";
-/// What the units chip says on hover.
-pub const UNITS_HINT: &str = "The units of this window: lengths in millimetres, angles in degrees";
-
 /// What the convention chip says on hover.
 #[must_use]
 pub fn convention_hint(formula: &str) -> String {

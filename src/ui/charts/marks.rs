@@ -29,6 +29,21 @@ pub fn marker(painter: &Painter, shape: MarkerShape, centre: Pos2, radius: f32, 
     });
 }
 
+/// A line with a head.
+pub fn arrow(painter: &Painter, from: Pos2, to: Pos2, stroke: Stroke) {
+    let head = 5.0 + 1.5 * stroke.width;
+    let along = to - from;
+    if along.length() < 1.0 {
+        return;
+    }
+    let along = along.normalized();
+    let shaft_end = to - along * head.min((to - from).length());
+    painter.line_segment([from, shaft_end], stroke);
+    let side = along.rot90() * head * 0.45;
+    let corners = vec![to, shaft_end + side, shaft_end - side];
+    painter.add(egui::Shape::convex_polygon(corners, stroke.color, Stroke::new(0.0, Color32::TRANSPARENT)));
+}
+
 /// A vertical error bar with caps.
 pub fn error_bar(painter: &Painter, low: Pos2, high: Pos2, stroke: Stroke) {
     const CAP: f32 = 3.0;

@@ -11,7 +11,7 @@ use egui_plot::{AxisHints, GridInput, GridMark, Plot, PlotPoint, PlotTransform};
 use crate::ui::{theme, widgets};
 
 pub use legend::{LegendEntry, LegendGlyph, legend};
-pub use marks::{dashed_circle, dashed_line, dotted_line, ellipse, error_bar, marker, thinned};
+pub use marks::{arrow, dashed_circle, dashed_line, dotted_line, ellipse, error_bar, marker, thinned};
 
 /// Grid lines of the y axis stand at least this far apart, points.
 const GRID_SPACING: f32 = 28.0;

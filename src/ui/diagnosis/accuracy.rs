@@ -15,7 +15,6 @@ use crate::ui::widgets::{fixed, number_text, split_row, value_row};
 use crate::ui::{charts, theme, widgets};
 
 use super::model::View;
-use super::triad::arrow;
 
 /// Draws of a bootstrap: enough to know its σ to 3 %.
 const NUM_DRAWS: usize = 500;
@@ -146,7 +145,7 @@ fn view_along(ui: &Ui, place: Rect, variances: &[f64; 3], scale: f64, [right, up
     let angle = -(0.5 * (2.0 * xy).atan2(xx - yy)) as f32;
     let fill = theme::INLIER.gamma_multiply(0.12);
     charts::ellipse(&painter, centre, semi_axes, angle, fill, Stroke::new(1.2, theme::INLIER));
-    arrow(&painter, centre, centre + vec2(right as f32, -up as f32), Stroke::new(1.8, palette.bad));
+    charts::arrow(&painter, centre, centre + vec2(right as f32, -up as f32), Stroke::new(1.8, palette.bad));
 
     let (length_mm, length) = scale_bar(scale, f64::from(place.width()) * 0.3);
     let left = place.left() + 8.0;

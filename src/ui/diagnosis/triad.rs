@@ -1,14 +1,14 @@
 //! The flange as a small triad with the direction that is known least, and how much the stations turn about each axis.
 
 use egui::{
-    Align2, Color32, FontId, Frame, Label, Margin, Painter, Pos2, Rect, Role, Sense, Stroke, Ui, UiBuilder, Vec2,
-    WidgetInfo, vec2,
+    Align2, FontId, Frame, Label, Margin, Pos2, Rect, Role, Sense, Stroke, Ui, UiBuilder, Vec2, WidgetInfo, vec2,
 };
 
 use crate::calibrate::Mount;
 use crate::geometry::Vec3;
 use crate::text::diagnosis as fault_words;
 use crate::text::diagnosis_panel as words;
+use crate::ui::charts::arrow;
 use crate::ui::theme;
 use crate::ui::widgets::fixed;
 
@@ -96,19 +96,4 @@ fn picture(ui: &Ui, place: Rect, in_flange: Vec3) {
     arrow(&painter, centre, at(direction), stroke);
     arrow(&painter, centre, at(-direction), stroke);
     painter.circle_filled(centre, 3.0, palette.text);
-}
-
-/// A line with a head.
-pub fn arrow(painter: &Painter, from: Pos2, to: Pos2, stroke: Stroke) {
-    let head = 5.0 + 1.5 * stroke.width;
-    let along = to - from;
-    if along.length() < 1.0 {
-        return;
-    }
-    let along = along.normalized();
-    let shaft_end = to - along * head.min((to - from).length());
-    painter.line_segment([from, shaft_end], stroke);
-    let side = along.rot90() * head * 0.45;
-    let corners = vec![to, shaft_end + side, shaft_end - side];
-    painter.add(egui::Shape::convex_polygon(corners, stroke.color, Stroke::new(0.0, Color32::TRANSPARENT)));
 }

@@ -1,6 +1,7 @@
 //! Step Poses: the stations in the robot's own convention, edited as in a spreadsheet.
 
 mod checks;
+pub mod convention;
 mod cursor;
 mod editor;
 mod grid;

@@ -10,6 +10,7 @@ use crate::ui::widgets::card_with_height;
 use crate::ui::{PanelContext, theme};
 
 use super::checks::Checks;
+use super::convention::{self, ConventionState};
 use super::cursor::Cursor;
 use super::grid::Grid;
 use super::keys::{self, Keyboard};
@@ -22,8 +23,9 @@ const TOOLBAR_HEIGHT: f32 = 32.0;
 const LINE_HEIGHT: f32 = 28.0;
 
 /// The state of the step.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub struct PosesState {
+    convention: ConventionState,
     sheet: Sheet,
     checks: Checks,
     keyboard: Keyboard,
@@ -34,11 +36,12 @@ pub struct PosesState {
 /// Draws the step.
 pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut PosesState) {
     let Some(document) = context.workbench.document() else { return };
+    convention::bar(ui, context, &mut state.convention);
     show_table(ui, context, document, state);
 }
 
 fn show_table(ui: &mut Ui, context: &mut PanelContext<'_>, document: &Document, state: &mut PosesState) {
-    let PosesState { sheet, checks, keyboard, seen } = state;
+    let PosesState { sheet, checks, keyboard, seen, .. } = state;
     sheet.refresh(document);
     checks.refresh(context.workbench, context.selection.method);
     let id = Id::unique("pose table");

@@ -6,6 +6,7 @@ use egui::{Frame, Label, Margin, RichText, Ui, UiBuilder, vec2};
 
 use crate::app::Document;
 use crate::session::Reading;
+use crate::text::conventions::notation_in_full;
 use crate::text::start as words;
 use crate::ui::actions::Action;
 use crate::ui::rail::Step;
@@ -64,7 +65,7 @@ fn setup(ui: &mut Ui, document: &Document, context: &mut PanelContext<'_>, form:
         if ui.link(words::CHANGE_CONVENTION).on_hover_text(words::CHANGE_CONVENTION_HINT).clicked() {
             context.actions.push(Action::GoTo(Step::Poses));
         }
-        ui.label(document.session.robot.notation.convention.label);
+        ui.label(notation_in_full(&document.session.robot.notation));
     });
     for field in
         [Field::PositionStd, Field::OrientationStd, Field::SensorModel, Field::ProfileStd, Field::ReferenceDistance]

@@ -18,7 +18,11 @@ pub fn pose_reading_in_full(reading: &PoseReading) -> String {
     let name = pose_reading(reading);
     let Some(order) = reading.angle_order() else { return name };
     let others: Vec<&str> = reading.makers().iter().skip(1).filter_map(|maker| maker.label.split(' ').next()).collect();
-    let also = if others.is_empty() { String::new() } else { format!(", also {}", others.join(", ")) };
+    let also = match others.split_at_checked(MAX_LISTED_MAKERS) {
+        _ if others.is_empty() => String::new(),
+        Some((listed, rest)) if rest.len() > 1 => format!(", also {}, …", listed.join(", ")),
+        _ => format!(", also {}", others.join(", ")),
+    };
     match order {
         AngleOrder::Intrinsic([i, j, k]) => {
             format!("{name}{also} ({order} = {} read backwards)", AngleOrder::Extrinsic([k, j, i]))
@@ -29,6 +33,9 @@ pub fn pose_reading_in_full(reading: &PoseReading) -> String {
         AngleOrder::RotationVector => format!("{name}{also}"),
     }
 }
+
+/// Other makers of an order that are listed; `docs/conventions.md` has them all.
+const MAX_LISTED_MAKERS: usize = 2;
 
 /// The poses as the session has them.
 const AS_GIVEN: &str = "given";

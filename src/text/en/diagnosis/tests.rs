@@ -42,7 +42,7 @@ fn ways_to_read_poses_have_all_their_names() {
     assert_eq!(pose_reading(&fanuc), "FANUC W P R");
     assert_eq!(
         pose_reading_in_full(&fanuc),
-        "FANUC W P R, also Yaskawa, Mitsubishi, Denso (extrinsic XYZ = intrinsic ZYX read backwards)"
+        "FANUC W P R, also Yaskawa, Mitsubishi, … (extrinsic XYZ = intrinsic ZYX read backwards)"
     );
     let in_radians = angles("ur-rotvec", "ur-rotvec", AngleUnit::Radians);
     assert_eq!(pose_reading_in_full(&in_radians), "UR RX RY RZ in radians");
