@@ -18,20 +18,26 @@ pub struct Document {
     pub revision: u64,
     /// What can be undone.
     pub history: History,
-    pub(super) saved: Arc<Session>,
+    /// As a file or sample has it; `None` if none does.
+    pub(super) saved: Option<Arc<Session>>,
 }
 
 impl Document {
     pub(super) fn new(session: Session, path: Option<PathBuf>, revision: u64) -> Self {
         let session = Arc::new(session);
         // Revisions are never used twice, so the first is as good a name as any.
-        Self { id: revision, saved: Arc::clone(&session), session, path, revision, history: History::default() }
+        Self { id: revision, saved: Some(Arc::clone(&session)), session, path, revision, history: History::default() }
     }
 
-    /// Whether there are edits that no file holds.
+    /// Whether there is something that no file holds.
     #[must_use]
     pub fn is_unsaved(&self) -> bool {
-        !Arc::ptr_eq(&self.session, &self.saved) && self.session != self.saved
+        self.saved.as_ref().is_none_or(|saved| !Arc::ptr_eq(&self.session, saved) && self.session != *saved)
+    }
+
+    /// No file holds anything of it, not even as it was when it came onto the bench.
+    pub(super) fn mark_as_never_saved(&mut self) {
+        self.saved = None;
     }
 
     /// The file's name, or the session's.

@@ -11,6 +11,7 @@ pub mod diagnosis;
 pub mod dialogs;
 pub mod figures;
 pub mod file_dialog;
+pub mod import;
 pub mod inspector;
 pub mod persisted;
 pub mod poses;

@@ -99,7 +99,7 @@ impl Workbench {
         self.notify(NoticeKind::Done, format!("saved to {}", save.path.display()));
         // Another document may be on the bench by now; its file is another.
         if let Some(document) = self.document.as_mut().filter(|document| document.id == save.document_id) {
-            document.saved = save.session;
+            document.saved = Some(save.session);
             document.path = Some(save.path);
         }
     }

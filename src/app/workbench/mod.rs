@@ -22,6 +22,7 @@ use super::{Command, Document};
 
 use self::files::{Loaded, Save};
 pub use self::imports::ImportDraft;
+use self::imports::Imports;
 pub use self::studies::Results;
 
 /// How serious a notice is.
@@ -83,7 +84,7 @@ pub struct Workbench {
     plan: Study<Result<Plan, PlanRefusal>>,
     readings: Study<Vec<ReadingFit>>,
     bootstrap: Study<Bootstrap>,
-    import: Option<ImportDraft>,
+    imports: Imports,
 }
 
 impl Workbench {
@@ -107,7 +108,7 @@ impl Workbench {
             plan: Study::default(),
             readings: Study::default(),
             bootstrap: Study::default(),
-            import: None,
+            imports: Imports::default(),
         }
     }
 
@@ -177,12 +178,6 @@ impl Workbench {
         &self.bootstrap
     }
 
-    /// The preview of an import, while one is open.
-    #[must_use]
-    pub const fn import(&self) -> Option<&ImportDraft> {
-        self.import.as_ref()
-    }
-
     /// Notices not yet dismissed, oldest first.
     #[must_use]
     pub fn notices(&self) -> &[Notice] {
@@ -217,6 +212,7 @@ impl Workbench {
             || self.plan.is_running()
             || self.readings.is_running()
             || self.bootstrap.is_running()
+            || self.imports.is_busy()
     }
 
     /// Carries out one command.
@@ -310,7 +306,7 @@ impl Workbench {
                 self.notify_broken(what, &ended);
             }
         }
-        changed
+        self.poll_imports() || changed
     }
 
     /// Puts a session on the bench and solves it.
