@@ -60,7 +60,7 @@ impl Window {
             creation.storage.and_then(|storage| eframe::get_value(storage, Persisted::KEY));
         let mut shell = Shell::new(&creation.egui_ctx, persisted.unwrap_or_default());
         if let Some(file) = start.file {
-            shell.workbench_mut().apply(Command::Open(file));
+            shell.request(Command::Open(file));
         }
         Self { shell }
     }

@@ -18,6 +18,12 @@ pub const IMPORT_FOLDER: &str = "Import folder…";
 pub const PASTE: &str = "Paste a table of poses";
 /// What the button does.
 pub const PASTE_HINT: &str = "Copy the table in a spreadsheet, a robot program or a paper; then press this, or Ctrl+V";
+/// Beside the buttons.
+pub const PASTE_KEY: &str = "Ctrl+V pastes as well";
+/// What the button does.
+pub const IMPORT_HINT: &str = "Spreadsheets (CSV), robot programs, profiles; several files at once";
+/// What the button does.
+pub const IMPORT_FOLDER_HINT: &str = "A folder with poses and numbered profiles";
 /// Menu entry.
 pub const ADD_SESSION: &str = "Add stations of another session…";
 /// Menu entry.

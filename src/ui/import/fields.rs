@@ -28,7 +28,7 @@ pub fn choice<T: Copy + PartialEq>(
     text: impl Fn(T) -> String,
 ) -> Option<T> {
     let width = ui.available_width();
-    list(ui, name, text(current), width, |ui| {
+    list(ui, name, &text(current), width, |ui| {
         let mut picked = None;
         for &choice in choices {
             if ui.selectable_label(choice == current, text(choice)).clicked() && choice != current {
@@ -43,18 +43,18 @@ pub fn choice<T: Copy + PartialEq>(
 pub fn list<R>(
     ui: &mut Ui,
     name: &str,
-    text: String,
+    text: &str,
     width: f32,
     entries: impl FnOnce(&mut Ui) -> Option<R>,
 ) -> Option<R> {
-    let combo = ComboBox::from_id_salt(name).selected_text(text.as_str()).width(width).height(420.0).truncate();
+    let combo = ComboBox::from_id_salt(name).selected_text(text).width(width).height(420.0).truncate();
     let shown = combo.show_ui(ui, |ui| {
         ui.set_min_width(width.max(176.0));
         entries(ui)
     });
     shown.response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::ComboBox, ui.is_enabled(), name);
-        info.current_text_value = Some(text.clone());
+        info.current_text_value = Some(text.to_owned());
         info
     });
     shown.inner.flatten()
@@ -72,6 +72,9 @@ pub fn text_field(ui: &mut Ui, name: &str, hint: &str, text: &mut String, width:
     });
     response
 }
+
+/// Between the fields of numbers, points.
+const NUMBER_GAP: f32 = 8.0;
 
 /// Six numbers of a frame as they are being typed: three lengths and three angles.
 #[derive(Clone, Debug, Default)]
@@ -96,16 +99,15 @@ impl SixNumbers {
         }
         let mut has_ended = false;
         let mut refusal = None;
-        const GAP: f32 = 8.0;
-        let width = (ui.available_width() - 2.0 * GAP) / 3.0;
-        for row in 0..2 {
+        let width = (ui.available_width() - 2.0 * NUMBER_GAP) / 3.0;
+        for (names, texts) in names.chunks(3).zip(self.texts.chunks_mut(3)) {
             ui.horizontal(|ui| {
-                ui.spacing_mut().item_spacing.x = GAP;
-                for idx in 3 * row..3 * row + 3 {
+                ui.spacing_mut().item_spacing.x = NUMBER_GAP;
+                for (name, text) in names.iter().zip(texts) {
                     ui.vertical(|ui| {
                         ui.spacing_mut().item_spacing.y = 2.0;
-                        ui.label(theme::dim(ui, &names[idx]).small());
-                        let field = text_field(ui, &frame(&names[idx]), "", &mut self.texts[idx], width);
+                        ui.label(theme::dim(ui, name).small());
+                        let field = text_field(ui, &frame(name), "", text, width);
                         has_ended |= field.lost_focus();
                     });
                 }
@@ -122,7 +124,7 @@ impl SixNumbers {
             ui.label(egui::RichText::new(format!("! {refusal}")).color(theme::palette(ui).warn).small());
             return None;
         }
-        (has_ended && numbers != values).then(|| {
+        (has_ended && numbers.map(f64::to_bits) != values.map(f64::to_bits)).then(|| {
             self.shown = Some(numbers);
             numbers
         })

@@ -2,7 +2,7 @@
 
 use egui::{Align, Context, Frame, Id, Key, Layout, Modal, Modifiers, ProgressBar, ScrollArea, Stroke, Ui, vec2};
 
-use crate::app::{Command, ImportDraft, ImportInto, Workbench};
+use crate::app::{Command, ImportDraft, ImportInto, Progress, Workbench};
 use crate::session::Target;
 use crate::session::import::{ImportError, ImportOptions, Imported};
 use crate::session::table::number::parse_number;
@@ -195,7 +195,7 @@ fn heading(
         }
     }
     if workbench.is_reading_import() {
-        let fraction = workbench.import_progress().map_or(0.0, |progress| progress.fraction());
+        let fraction = workbench.import_progress().map_or(0.0, Progress::fraction);
         ui.add(ProgressBar::new(fraction).desired_width(72.0).desired_height(6.0));
         ui.label(theme::dim(ui, words::READING));
     }

@@ -151,7 +151,7 @@ fn poses(ui: &mut Ui, current: &ImportOptions, typed: &mut Typed, set: Set<'_>) 
 }
 
 fn orientation(ui: &mut Ui, notation: &PoseNotation) -> Option<PoseNotation> {
-    let text = words::orientation_form(notation.orientation, notation.convention.label).to_owned();
+    let text = words::orientation_form(notation.orientation, notation.convention.label);
     let width = ui.available_width();
     fields::list(ui, words::ORIENTATION, text, width, |ui| {
         let mut picked = None;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use egui::{Context, ViewportCommand};
 
-use crate::app::{Command, Document, NoticeKind};
+use crate::app::{Command, Document, ImportInto, NoticeKind};
 use crate::text::shell as words;
 use crate::ui::dialogs::{self, SavePath, SavePathAnswer, UnsavedAnswer};
 use crate::ui::file_dialog::{Answer, Purpose};
@@ -15,7 +15,17 @@ use super::{Pending, Shell};
 impl Shell {
     /// Applies a command; one that puts another document on the bench asks first if changes would be lost.
     pub fn request(&mut self, command: Command) {
-        let replaces = matches!(command, Command::Open(_) | Command::OpenSample(_) | Command::CloseDocument);
+        let command = match command {
+            Command::Open(path) => Command::to_read(vec![path]),
+            other => other,
+        };
+        let replaces = matches!(
+            command,
+            Command::Open(_)
+                | Command::OpenSample(_)
+                | Command::CloseDocument
+                | Command::FinishImport(ImportInto::NewSession { .. })
+        );
         if replaces && self.workbench.document().is_some_and(Document::is_unsaved) {
             self.unsaved_question = Some(Pending::Command(command));
             return;
@@ -41,6 +51,9 @@ impl Shell {
                 self.workbench.apply(Command::DismissNotice(id));
             }
             self.step = Step::Session;
+        }
+        if matches!(command, Command::FinishImport(_)) {
+            self.step = Step::Poses;
         }
         self.workbench.apply(command);
     }
@@ -73,8 +86,7 @@ impl Shell {
 
     pub(super) fn take_dialog_answer(&mut self) {
         match self.file_dialog.poll() {
-            Some(Answer::Chosen(Purpose::Open, path)) => self.request(Command::Open(path)),
-            Some(Answer::Chosen(Purpose::Save, path)) => self.workbench.apply(Command::SaveAs(path)),
+            Some(Answer::Chosen(purpose, paths)) => self.take_paths(purpose, paths),
             Some(Answer::Unavailable(Purpose::Open)) => {
                 self.step = Step::Session;
                 self.start.ask_for_path(words::NO_FILE_DIALOG);
@@ -84,6 +96,9 @@ impl Shell {
                 let suggestion = folder.join(self.suggested_name());
                 let own_file = self.workbench.document().and_then(|document| document.path.clone());
                 self.save_path = Some(SavePath::new(suggestion.display().to_string(), own_file));
+            }
+            Some(Answer::Unavailable(purpose)) => {
+                self.save_path = Some(SavePath::to(purpose, self.suggested_path(purpose)));
             }
             Some(Answer::Cancelled) => self.after_saving = None,
             None => {}
@@ -127,10 +142,12 @@ impl Shell {
 
     pub(super) fn questions(&mut self, ctx: &Context) {
         dialogs::help(ctx, &self.workbench, &mut self.is_help_open);
-        if let Some(answer) = self.save_path.as_mut().and_then(|save_path| save_path.ask(ctx)) {
+        if let Some((purpose, answer)) =
+            self.save_path.as_mut().and_then(|save_path| Some((save_path.purpose(), save_path.ask(ctx)?)))
+        {
             self.save_path = None;
             match answer {
-                SavePathAnswer::Save(path) => self.workbench.apply(Command::SaveAs(path)),
+                SavePathAnswer::Save(path) => self.take_paths(purpose, vec![path]),
                 SavePathAnswer::Cancel => self.after_saving = None,
             }
         }

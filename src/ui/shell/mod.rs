@@ -1,6 +1,7 @@
 //! The window's frame around the panels, and what it does with actions and commands.
 
 mod documents;
+mod imports;
 mod news;
 
 use std::sync::Arc;
@@ -17,6 +18,7 @@ use super::compare::CompareState;
 use super::diagnosis::DiagnosisState;
 use super::dialogs::SavePath;
 use super::file_dialog::{FileDialog, Purpose};
+use super::import::{self, ImportState};
 use super::persisted::Persisted;
 use super::poses::panel::PosesState;
 use super::rail::{self, Step};
@@ -52,6 +54,9 @@ pub struct Shell {
     arcs: ArcsState,
     compare: CompareState,
     diagnosis: DiagnosisState,
+    import: ImportState,
+    /// Frames until a clipboard that was asked for its text counts as empty.
+    paste_patience: Option<u8>,
     persisted: Persisted,
     file_dialog: FileDialog,
     save_path: Option<SavePath>,
@@ -88,6 +93,8 @@ impl Shell {
             arcs: ArcsState::default(),
             compare: CompareState::default(),
             diagnosis: DiagnosisState::default(),
+            import: ImportState::default(),
+            paste_patience: None,
             persisted,
             file_dialog: FileDialog::default(),
             save_path: None,
@@ -134,7 +141,7 @@ impl Shell {
     /// Whether something is being read or solved in the background.
     #[must_use]
     pub const fn is_busy(&self) -> bool {
-        self.workbench.is_busy() || self.start.is_reading()
+        self.workbench.is_busy() || self.start.is_reading() || self.paste_patience.is_some()
     }
 
     /// Takes in finished jobs; also while the window is hidden.
@@ -156,9 +163,20 @@ impl Shell {
         let ctx = ui.ctx().clone();
         let mut actions = actions::pressed(&ctx, &self.workbench);
         let mut commands = Vec::new();
-        Self::open_dropped_files(&ctx, &mut commands);
+        Self::read_dropped_files(&ctx, &mut commands);
+        self.take_pasted_text(&ctx, &mut commands);
+        let is_importing = self.workbench.import().is_some();
+        if is_importing {
+            actions.retain(|action| *action == Action::Quit);
+        }
+        // What is typed into the preview is not for the panels below it.
+        let events = if is_importing { ctx.input_mut(|input| std::mem::take(&mut input.events)) } else { Vec::new() };
         self.bars(ui, &mut actions, &mut commands);
         self.center(ui, &mut actions, &mut commands);
+        if is_importing {
+            ctx.input_mut(|input| input.events = events);
+        }
+        import::show(&ctx, &self.workbench, &mut self.import, &mut self.persisted.imports, &mut commands);
         self.questions(&ctx);
         for action in actions {
             self.perform(&ctx, action, &mut commands);
@@ -219,7 +237,7 @@ impl Shell {
         });
     }
 
-    fn open_dropped_files(ctx: &Context, commands: &mut Vec<Command>) {
+    fn read_dropped_files(ctx: &Context, commands: &mut Vec<Command>) {
         let (dropped, is_hovering) = ctx.input(|input| {
             let paths: Vec<_> = input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect();
             (paths, !input.raw.hovered_files.is_empty())
@@ -227,13 +245,20 @@ impl Shell {
         if is_hovering {
             drop_overlay(ctx);
         }
-        // One document at a time: of several files, the first.
-        commands.extend(dropped.into_iter().take(1).map(Command::Open));
+        if !dropped.is_empty() {
+            commands.push(Command::to_read(dropped));
+        }
     }
 
     fn perform(&mut self, ctx: &Context, action: Action, commands: &mut Vec<Command>) {
         match action {
-            Action::Open => self.file_dialog.start(Purpose::Open, String::new(), Arc::clone(&self.wake)),
+            Action::Open => self.ask_for_paths(Purpose::Open),
+            Action::Import => self.ask_for_paths(Purpose::ImportFiles),
+            Action::ImportFolder => self.ask_for_paths(Purpose::ImportFolder),
+            Action::AddSession => self.ask_for_paths(Purpose::AddSession),
+            Action::ExportPoses => self.ask_for_paths(Purpose::ExportPoses),
+            Action::ExportProfiles => self.ask_for_paths(Purpose::ExportProfiles),
+            Action::Paste => self.ask_for_clipboard(ctx),
             Action::OpenSample(sample_idx) => commands.push(Command::OpenSample(sample_idx)),
             Action::Save => self.save(),
             Action::SaveAs => self.save_as(),

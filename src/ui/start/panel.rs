@@ -14,7 +14,7 @@ use crate::text::shell as shell_words;
 use crate::text::start as words;
 use crate::ui::actions::Action;
 use crate::ui::widgets::{card, primary_button, symbol_button};
-use crate::ui::{PanelContext, theme};
+use crate::ui::{PanelContext, import, theme};
 
 use super::model::{SamplePreview, preview_samples};
 use super::{overview, paint};
@@ -113,6 +113,7 @@ fn open_card(
                 }
                 errors(ui, context);
                 ui.label(theme::dim(ui, words::DROP_HINT).small());
+                import::entries(ui, context.actions);
                 recent(ui, context, recent_files);
             });
         },
