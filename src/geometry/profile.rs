@@ -28,7 +28,7 @@ pub enum ProfileError {
 }
 
 /// One reading of the laser line, in the sensor's plane `y = 0`, mm. A point without a valid range has `z = NaN`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Profile {
     x_mm: Vec<f64>,
     z_mm: Vec<f64>,
