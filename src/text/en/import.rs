@@ -2,6 +2,7 @@
 
 use crate::geometry::notation::{LengthUnit, OrientationForm};
 use crate::geometry::{AngleOrder, PoseNotation};
+use crate::session::Reading;
 use crate::session::import::{Imported, Kind, Note, Part, Role, Separator, Source};
 
 use super::plural;
@@ -176,6 +177,8 @@ pub const NOTHING_OPEN: &str = "No session is open.";
 /// Reason of a disabled button.
 pub const NOTHING_READ: &str = "There is no station to make it of yet.";
 /// Reason of a disabled button.
+pub const PROFILES_ONLY: &str = "Profiles belong to poses: import both together.";
+/// Reason of a disabled button.
 pub const STILL_READING: &str = "The text is still being read.";
 /// Reason of a disabled button.
 pub const NAME_MISSING: &str = "Give the session a name.";
@@ -338,10 +341,11 @@ pub fn suggested_name(sources: &[Source]) -> String {
 /// What there is to be imported, in a line.
 #[must_use]
 pub fn outcome(imported: &Imported) -> String {
-    use crate::session::Reading;
     let readings = || imported.stations.iter().flat_map(|station| &station.captures).map(|capture| &capture.reading);
-    let num_profiles = readings().filter(|reading| matches!(reading, Reading::Profile(_))).count();
-    let num_points = readings().count() - num_profiles;
+    // A pose without a profile has an empty one.
+    let is_profile = |reading: &&Reading| matches!(reading, Reading::Profile(profile) if profile.len() > 0);
+    let num_profiles = readings().filter(is_profile).count();
+    let num_points = readings().filter(|reading| matches!(reading, Reading::Point(_))).count();
     let with = match (num_profiles, num_points) {
         (0, 0) => String::new(),
         (profiles, 0) => format!(" with {}", count(profiles, "profile")),
@@ -387,15 +391,19 @@ pub fn note(note: &Note) -> String {
             poses_are(*num_poses)
         ),
         Note::PosesWithoutReading { num_poses } => format!(
-            "{} no profile or point: add {} by dropping the files together",
+            "{} neither a profile nor a point: import the profiles together with the poses",
             if *num_poses == 1 { "1 pose has".to_owned() } else { format!("{num_poses} poses have") },
-            if *num_poses == 1 { "it" } else { "them" }
         ),
         Note::ProfilesWithoutPose { names } => {
-            const MAX_LISTED: usize = 3;
-            let listed = names.iter().take(MAX_LISTED).cloned().collect::<Vec<_>>().join(", ");
-            let more = if names.len() > MAX_LISTED { ", …" } else { "" };
-            format!("{} without a pose, left out: {listed}{more}", count(names.len(), "profile"))
+            format!("{} without a pose, left out: {}", count(names.len(), "profile"), some_of(names))
+        }
+        Note::SourcesLeftOut { names } => {
+            format!("{} in which nothing was recognised, left out: {}", count(names.len(), "file"), some_of(names))
+        }
+        Note::OtherTablesLeftOut { caption, num_tables } => {
+            let first = if caption.is_empty() { "the first".to_owned() } else { format!("the first, \"{caption}\",") };
+            let others = count(*num_tables, "further table");
+            format!("The text holds {others}: only {first} was read. Copy another one alone to import it")
         }
         Note::QuaternionsNormalised { num_poses } => {
             format!("{num_poses} quaternion{} rounded: brought back to norm 1", were(*num_poses))
@@ -404,6 +412,13 @@ pub fn note(note: &Note) -> String {
             format!("{num_poses} position{} given as joint angles only, left out", were(*num_poses))
         }
     }
+}
+
+/// The first few names.
+fn some_of(names: &[String]) -> String {
+    const MAX_LISTED: usize = 3;
+    let listed = names.iter().take(MAX_LISTED).cloned().collect::<Vec<_>>().join(", ");
+    if names.len() > MAX_LISTED { format!("{listed}, …") } else { listed }
 }
 
 fn poses_are(num_poses: usize) -> String {

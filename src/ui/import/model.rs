@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::geometry::{Base, Flange, PoseConvention, PoseNotation, Tcp, Transform};
-use crate::session::import::{Imported, Kind, Preview, Problem, Role, Source};
+use crate::session::import::{Imported, Kind, Preview, Role, Source};
 
 /// Lines of a text that are shown where nothing could be read of it.
 const MAX_LINES: usize = 40;
@@ -56,16 +56,28 @@ pub fn has_profiles(imported: &Imported) -> bool {
 
 /// Rows of the preview with a problem, each with the columns of the cells in question.
 #[must_use]
-pub fn marked_cells(preview: &Preview, sources: &[Source], problems: &[Problem]) -> BTreeMap<usize, BTreeSet<usize>> {
+pub fn marked_cells(imported: &Imported, sources: &[Source]) -> BTreeMap<usize, BTreeSet<usize>> {
     let mut marked: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
-    for problem in problems {
-        let Some(row_idx) = preview.rows.iter().position(|(line, _)| *line == problem.line) else { continue };
-        let Some(source) = sources.iter().find(|source| source.name == problem.file) else { continue };
-        let Some(line) = source.text.lines().nth(problem.line.saturating_sub(1)) else { continue };
-        let (_, cells) = &preview.rows[row_idx];
-        marked.entry(row_idx).or_default().extend(cell_at(line, cells, problem.column));
+    let is_table = imported.options.kind.is_some_and(has_columns);
+    let Some(shown) = shown_source(imported) else { return marked };
+    for problem in imported.problems.iter().filter(|problem| problem.file == shown) {
+        let rows = &imported.preview.rows;
+        let Some(row_idx) = rows.iter().position(|(line, _)| *line == problem.line) else { continue };
+        let marks = marked.entry(row_idx).or_default();
+        let source = sources.iter().find(|source| source.name == problem.file);
+        let line = source.and_then(|source| source.text.lines().nth(problem.line.saturating_sub(1)));
+        // Elsewhere the cells of the preview do not stand in one line of the text.
+        if let Some(line) = line.filter(|_| is_table) {
+            marks.extend(cell_at(line, &rows[row_idx].1, problem.column));
+        }
     }
     marked
+}
+
+/// The source whose rows the preview shows: the first with poses.
+fn shown_source(imported: &Imported) -> Option<&str> {
+    let part = imported.parts.iter().find(|part| part.num_poses > 0).or_else(|| imported.parts.first())?;
+    Some(&part.name)
 }
 
 /// The cell in which a column of characters, from 1, lies: cells stand in the line one after the other.
@@ -122,6 +134,7 @@ pub fn tool_point_numbers(flange_from_tcp: &Transform<Flange, Tcp>, convention: 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::session::import::{ImportOptions, Part, Problem};
 
     #[test]
     fn a_role_that_another_column_has_changes_places_with_it() {
@@ -149,7 +162,6 @@ mod tests {
             assert_eq!(cell_at(line, &cells, column), Some(cell), "column {column}");
         }
         let source = Source { name: "a.csv".to_owned(), text: format!("head\n{line}\n") };
-        let preview = Preview { rows: vec![(2, cells)], num_rows: 1, ..Preview::default() };
         let problem = Problem {
             file: "a.csv".to_owned(),
             line: 2,
@@ -157,7 +169,18 @@ mod tests {
             found: "\"oops\"".to_owned(),
             expected: "a number".to_owned(),
         };
-        let marked = marked_cells(&preview, &[source], &[problem]);
+        let imported = Imported {
+            options: ImportOptions { kind: Some(Kind::PoseTable), ..ImportOptions::default() },
+            parts: vec![Part { name: "a.csv".to_owned(), kind: Kind::PoseTable, num_poses: 0, num_readings: 0 }],
+            preview: Preview { rows: vec![(2, cells)], num_rows: 1, ..Preview::default() },
+            stations: Vec::new(),
+            problems: vec![problem],
+            num_problems: 1,
+            notes: Vec::new(),
+            published: None,
+            session: None,
+        };
+        let marked = marked_cells(&imported, &[source]);
         assert_eq!(marked.into_iter().collect::<Vec<_>>(), [(0, BTreeSet::from([2]))]);
     }
 

@@ -12,7 +12,7 @@ use crate::ui::{theme, widgets};
 
 use super::memory::{Form, ImportMemory};
 use super::settings::Typed;
-use super::{fields, preview, settings};
+use super::{fields, model, preview, settings};
 
 /// Distance from the window's border, points; less where there is little room.
 const MARGIN: f32 = 24.0;
@@ -238,6 +238,7 @@ fn footer(
     let not_ready = match imported {
         _ if workbench.is_reading_import() => Some(words::STILL_READING),
         Some(imported) if !imported.stations.is_empty() => None,
+        Some(imported) if model::has_profiles(imported) => Some(words::PROFILES_ONLY),
         _ => Some(words::NOTHING_READ),
     };
     let new_session = match imported {

@@ -69,7 +69,7 @@ fn column_width(chars: usize) -> f32 {
 
 fn columns(ui: &mut Ui, draft: &ImportDraft, imported: &Imported) -> Option<ImportOptions> {
     let preview = &imported.preview;
-    let marked = model::marked_cells(preview, &draft.sources, &imported.problems);
+    let marked = model::marked_cells(imported, &draft.sources);
     let widths: Vec<f32> = model::column_chars(preview).into_iter().map(column_width).collect();
     ui.spacing_mut().item_spacing.x = 0.0;
     let mut builder = table(ui, ("import preview", draft.id, widths.len())).column(Column::exact(LINE_WIDTH));
