@@ -96,7 +96,9 @@ fn added_stations_are_one_step_of_undo_under_the_name_of_their_file() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = write(folder.path(), "poses.csv", TABLE);
     let mut bench = Bench::new();
-    bench.workbench.open_session(session::parse(sample("few-rotations.json").json.as_bytes(), "s").expect("valid"), None);
+    bench
+        .workbench
+        .open_session(session::parse(sample("few-rotations.json").json.as_bytes(), "s").expect("valid"), None);
     bench.settle();
     let before = bench.session().clone();
     bench.apply(Command::Import(vec![path]));
@@ -192,10 +194,9 @@ fn stations_of_another_session_are_added_behind_those_of_the_open_one() {
     let other = sample("lin-mu-2019-table-2.json");
     let path = write(folder.path(), "other.json", other.json);
     let mut bench = Bench::new();
-    bench.workbench.open_session(
-        session::parse(sample("lin-mu-2019-table-1.json").json.as_bytes(), "s").expect("valid"),
-        None,
-    );
+    bench
+        .workbench
+        .open_session(session::parse(sample("lin-mu-2019-table-1.json").json.as_bytes(), "s").expect("valid"), None);
     bench.settle();
     bench.apply(Command::Import(vec![path]));
     bench.apply(Command::FinishImport(ImportInto::OpenSession));

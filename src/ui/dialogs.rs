@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use egui::{Context, Frame, Grid, Id, Key, Modal, TextEdit, Ui, WidgetInfo};
 
 use crate::app::Workbench;
-use crate::text::shell as words;
+use crate::text::{import as import_words, shell as words};
 
 use super::actions::{Action, OTHER_REDO};
 use super::file_dialog::Purpose;
@@ -190,6 +190,7 @@ pub fn help(ctx: &Context, workbench: &Workbench, open: &mut bool) {
         Grid::new("shortcuts").num_columns(2).spacing([24.0, 4.0]).show(ui, |ui| {
             for action in [
                 Action::Open,
+                Action::Import,
                 Action::Save,
                 Action::SaveAs,
                 Action::Close,
@@ -206,6 +207,7 @@ pub fn help(ctx: &Context, workbench: &Workbench, open: &mut bool) {
                     key_row(ui, &keys, &action.label(workbench));
                 }
             }
+            key_row(ui, import_words::PASTE_KEYS, import_words::PASTE);
             key_row(ui, "1 2 3 4 5", words::KEYS_RAIL);
             key_row(ui, "↑ ↓", words::KEYS_LIST);
             key_row(ui, "← →", words::KEYS_STEPS);

@@ -36,6 +36,14 @@ impl Workbench {
         }
     }
 
+    /// Puts a session on the bench that no file holds yet, and solves it.
+    pub fn open_unsaved_session(&mut self, session: Session) {
+        self.open_session(session, None);
+        if let Some(document) = &mut self.document {
+            document.mark_as_never_saved();
+        }
+    }
+
     pub(super) fn start_loading(&mut self, path: PathBuf) {
         self.revision_before_loading = self.document.as_ref().map(|document| document.revision);
         self.loading.start("load session", &self.wake, move |_| {

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use crate::app::ImportInto;
 use crate::app::jobs::{JobOutcome, Slot};
+use crate::session::Edit;
 use crate::session::import::{self, ImportError, ImportOptions, Imported, Source};
-use crate::session::{Edit, Target};
 use crate::text::edits::import_label;
 use crate::text::import as words;
 
@@ -149,16 +149,9 @@ impl Workbench {
         match into {
             ImportInto::NewSession { name, target } => {
                 self.imports.end();
-                self.open_unsaved(Arc::unwrap_or_clone(imported), name, target);
+                self.open_unsaved_session(Arc::unwrap_or_clone(imported).into_session(name, target));
             }
             ImportInto::OpenSession => self.add_stations(&imported, &name),
-        }
-    }
-
-    fn open_unsaved(&mut self, imported: Imported, name: String, target: Target) {
-        self.open_session(imported.into_session(name, target), None);
-        if let Some(document) = &mut self.document {
-            document.mark_as_never_saved();
         }
     }
 

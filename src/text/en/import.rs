@@ -19,6 +19,8 @@ pub const IMPORT_FOLDER: &str = "Import folder…";
 pub const PASTE: &str = "Paste a table of poses";
 /// What the button does.
 pub const PASTE_HINT: &str = "Copy the table in a spreadsheet, a robot program or a paper; then press this, or Ctrl+V";
+/// The keys.
+pub const PASTE_KEYS: &str = "Ctrl+V";
 /// Beside the buttons.
 pub const PASTE_KEY: &str = "Ctrl+V pastes as well";
 /// What the button does.
@@ -83,7 +85,7 @@ pub const PROFILES: &str = "Profiles";
 /// Row.
 pub const FORM: &str = "form";
 /// Row.
-pub const SEPARATOR: &str = "columns apart by";
+pub const SEPARATOR: &str = "separator";
 /// Row.
 pub const DECIMAL: &str = "decimal sign";
 /// Value.
@@ -93,9 +95,9 @@ pub const DECIMAL_COMMA: &str = "comma, 1,5";
 /// Row.
 pub const HEADER: &str = "first row";
 /// Value.
-pub const HEADER_NAMES: &str = "names of the columns";
+pub const HEADER_NAMES: &str = "column names";
 /// Value.
-pub const HEADER_POSE: &str = "a pose already";
+pub const HEADER_POSE: &str = "a row like others";
 /// Row.
 pub const POSITION_UNIT: &str = "positions in";
 /// Row.
@@ -127,7 +129,7 @@ pub const USER_FRAME: &str = "a user frame";
 /// Above its six numbers.
 pub const USER_FRAME_IN_BASE: &str = "The user frame in the base";
 /// Checkbox.
-pub const INVERSE: &str = "inverse: the base seen from the flange";
+pub const INVERSE: &str = "inverse: the base as seen from the flange";
 /// Row.
 pub const PROFILE_UNIT: &str = "x and z in";
 /// Checkbox.
@@ -162,6 +164,8 @@ pub const NAME: &str = "name";
 pub const TARGET: &str = "target";
 /// Field.
 pub const RADIUS: &str = "radius";
+/// Unit of the radius.
+pub const MM: &str = "mm";
 /// Target.
 pub const BALL: &str = "ball";
 /// Target.
@@ -182,6 +186,8 @@ pub const PROFILES_ONLY: &str = "Profiles belong to poses: import both together.
 pub const STILL_READING: &str = "The text is still being read.";
 /// Reason of a disabled button.
 pub const NAME_MISSING: &str = "Give the session a name.";
+/// Beside a field that must not stay empty.
+pub const NEEDED: &str = "! needed";
 /// Reason of a disabled button.
 pub const RADIUS_MISSING: &str = "Type the ball's radius in mm, for example 15.";
 
@@ -279,7 +285,7 @@ pub fn orientation_meaning(notation: &PoseNotation) -> String {
         OrientationForm::Angles if notation.convention.order == AngleOrder::RotationVector => {
             "axis times angle".to_owned()
         }
-        OrientationForm::Angles => format!("{}, {}", notation.convention.formula, notation.convention.order),
+        OrientationForm::Angles => notation.convention.formula.to_owned(),
         OrientationForm::QuaternionWxyz => "the real part first".to_owned(),
         OrientationForm::QuaternionXyzw => "the real part last".to_owned(),
     }
@@ -311,10 +317,12 @@ pub fn part(part: &Part) -> String {
             _ => count(part.num_readings, "reading"),
         });
     }
-    if gave.is_empty() {
-        gave.push("nothing".to_owned());
+    let what = kind(part.kind);
+    match (part.kind, part.num_readings) {
+        (Kind::Session, _) | (Kind::Profile, 1) => what.to_owned(),
+        _ if gave.is_empty() => format!("{what}: nothing"),
+        _ => format!("{what}: {}", gave.join(", ")),
     }
-    format!("{}: {}", kind(part.kind), gave.join(", "))
 }
 
 /// Where something came from: the source, or how many there are.

@@ -7,6 +7,8 @@ use crate::ui::{theme, widgets};
 
 /// Width of the labels, points.
 const LABEL_WIDTH: f32 = 104.0;
+/// Height of a line below a row, points.
+const REMARK_HEIGHT: f32 = 16.0;
 /// Height of a row with a control, points.
 pub const CONTROL_HEIGHT: f32 = 28.0;
 
@@ -146,10 +148,10 @@ pub fn heading(ui: &mut Ui, text: &str) {
 
 /// A dim line below a row, in line with its control.
 pub fn remark(ui: &mut Ui, text: &str) {
-    ui.horizontal(|ui| {
-        ui.add_space(LABEL_WIDTH);
-        ui.add(Label::new(theme::dim(ui, text).small()).truncate());
-    });
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), REMARK_HEIGHT), Sense::hover());
+    let beside = rect.with_min_x(rect.left() + LABEL_WIDTH);
+    let text = Label::new(theme::dim(ui, text).small()).truncate();
+    ui.new_child(UiBuilder::new().max_rect(beside).layout(Layout::left_to_right(Align::Center))).add(text);
 }
 
 /// A sentence with a mark before it, wrapped beside it.

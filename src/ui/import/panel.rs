@@ -309,8 +309,12 @@ fn new_session_fields(ui: &mut Ui, state: &mut ImportState) {
     if state.target == TargetKind::Ball {
         ui.add_space(8.0);
         ui.label(theme::dim(ui, words::RADIUS));
-        fields::text_field(ui, words::RADIUS, "15", &mut state.radius, 64.0);
-        ui.label(theme::dim(ui, "mm"));
+        fields::text_field(ui, words::RADIUS, "", &mut state.radius, 64.0);
+        ui.label(theme::dim(ui, words::MM));
+        if parse_number(&state.radius).is_err() {
+            let needed = egui::RichText::new(words::NEEDED).color(theme::palette(ui).warn);
+            ui.label(needed).on_hover_text(words::RADIUS_MISSING);
+        }
     }
 }
 

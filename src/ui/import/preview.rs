@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use egui::{Align, CornerRadius, Label, Layout, RichText, ScrollArea, Ui, vec2};
+use egui::{Align, CornerRadius, Label, Layout, RichText, ScrollArea, Ui, UiBuilder, vec2};
 use egui_extras::{Column, TableRow};
 
 use crate::app::ImportDraft;
@@ -17,12 +17,14 @@ use super::{fields, model};
 
 /// Height of the table's head: the list of roles, and the column's own name.
 const HEAD_HEIGHT: f32 = 52.0;
-/// Width of a column at least, points: room for the names of roles.
-const MIN_COLUMN_WIDTH: f32 = 96.0;
+/// Width of a column at least, points.
+const MIN_COLUMN_WIDTH: f32 = 88.0;
 /// Width of a column at most, points.
 const MAX_COLUMN_WIDTH: f32 = 200.0;
 /// Width of a figure, points.
 const CHAR_WIDTH: f32 = 7.4;
+/// Room that a list over a column needs beside its text, points.
+const LIST_WIDTH: f32 = 52.0;
 /// Width of the line numbers, points.
 const LINE_WIDTH: f32 = 56.0;
 /// Height of the list of problems and notes at most, as a part of the whole.
@@ -63,14 +65,28 @@ const fn lines_height(num_lines: usize) -> f32 {
 }
 
 #[expect(clippy::cast_precision_loss, reason = "widths of texts, clamped")]
-fn column_width(chars: usize) -> f32 {
-    (chars as f32).mul_add(CHAR_WIDTH, 16.0).clamp(MIN_COLUMN_WIDTH, MAX_COLUMN_WIDTH).round()
+fn column_width(chars: usize, role_chars: usize) -> f32 {
+    let of_cells = (chars as f32).mul_add(CHAR_WIDTH, 16.0).clamp(MIN_COLUMN_WIDTH, MAX_COLUMN_WIDTH);
+    of_cells.max((role_chars as f32).mul_add(CHAR_WIDTH, LIST_WIDTH)).round()
+}
+
+/// What the role of a column is called.
+fn role_text(imported: &Imported, role: Role) -> String {
+    let notation = imported.options.notation.unwrap_or_default();
+    words::role(role, &notation, imported.options.profile_length_unit.unwrap_or_default())
+}
+
+fn role_of(imported: &Imported, column: usize) -> Role {
+    imported.preview.roles.get(column).copied().unwrap_or(Role::Ignore)
 }
 
 fn columns(ui: &mut Ui, draft: &ImportDraft, imported: &Imported) -> Option<ImportOptions> {
     let preview = &imported.preview;
     let marked = model::marked_cells(imported, &draft.sources);
-    let widths: Vec<f32> = model::column_chars(preview).into_iter().map(column_width).collect();
+    let role_chars = |column| role_text(imported, role_of(imported, column)).chars().count();
+    let widths: Vec<f32> = (model::column_chars(preview).into_iter().enumerate())
+        .map(|(column, chars)| column_width(chars, role_chars(column)))
+        .collect();
     ui.spacing_mut().item_spacing.x = 0.0;
     let mut builder = table(ui, ("import preview", draft.id, widths.len())).column(Column::exact(LINE_WIDTH));
     for width in &widths {
@@ -100,34 +116,39 @@ fn columns(ui: &mut Ui, draft: &ImportDraft, imported: &Imported) -> Option<Impo
 
 /// What a column means, over its own name.
 fn head(ui: &mut Ui, draft: &ImportDraft, imported: &Imported, column: usize) -> Option<ImportOptions> {
-    let roles = &imported.preview.roles;
-    let role = roles.get(column).copied().unwrap_or(Role::Ignore);
-    let notation = imported.options.notation.unwrap_or_default();
-    let point_unit = imported.options.profile_length_unit.unwrap_or_default();
+    let role = role_of(imported, column);
     let mut picked = None;
-    ui.with_layout(Layout::top_down(Align::Min), |ui| {
-        ui.spacing_mut().item_spacing.y = 2.0;
-        ui.add_space(2.0);
-        let text = |role| words::role(role, &notation, point_unit);
-        ui.horizontal(|ui| {
-            ui.add_space(4.0);
-            if model::has_free_roles(imported) {
-                let name = words::column_role(column + 1);
-                let choices = model::role_choices(&notation);
-                ui.set_max_width(ui.available_width() - 4.0);
-                picked = fields::choice(ui, &name, role, &choices, text);
-            } else {
-                ui.set_height(fields::CONTROL_HEIGHT);
-                ui.label(text(role));
-            }
-        });
-        ui.horizontal(|ui| {
-            ui.add_space(8.0);
-            let name = imported.preview.header.get(column).map_or("", String::as_str);
-            ui.add(Label::new(theme::dim(ui, name).small()).truncate());
-        });
-    });
+    let rect = ui.max_rect();
+    let split = rect.top() + 2.0 + fields::CONTROL_HEIGHT;
+    let layout = cell_layout(role);
+    let row = |rect: egui::Rect, layout| UiBuilder::new().max_rect(rect.shrink2(vec2(4.0, 0.0))).layout(layout);
+    let text = |role| role_text(imported, role);
+    let above = rect.with_min_y(rect.top() + 2.0).with_max_y(split);
+    if model::has_free_roles(imported) {
+        let ui = &mut ui.new_child(row(above, Layout::left_to_right(Align::Center)));
+        ui.spacing_mut().button_padding.x = 8.0;
+        let choices = model::role_choices(&imported.options.notation.unwrap_or_default());
+        picked = fields::choice(ui, &words::column_role(column + 1), role, &choices, text);
+    } else {
+        let ui = &mut ui.new_child(row(above, layout));
+        ui.add_space(4.0);
+        let color = if role == Role::Ignore { theme::palette(ui).text_dim } else { theme::palette(ui).text };
+        ui.label(RichText::new(text(role)).color(color));
+    }
+    let ui = &mut ui.new_child(row(rect.with_min_y(split), layout));
+    ui.add_space(4.0);
+    let name = imported.preview.header.get(column).map_or("", String::as_str);
+    ui.add(Label::new(theme::dim(ui, name).small()).truncate());
+    let roles = &imported.preview.roles;
     picked.map(|role| ImportOptions { roles: Some(model::with_role(roles, column, role)), ..draft.options.clone() })
+}
+
+/// Numbers stand at the right of their columns, texts at the left.
+const fn cell_layout(role: Role) -> Layout {
+    match role {
+        Role::Label | Role::Side | Role::Used | Role::Profile => Layout::left_to_right(Align::Center),
+        _ => Layout::right_to_left(Align::Center),
+    }
 }
 
 fn cells(
@@ -153,7 +174,7 @@ fn cells(
         row.col(|ui| {
             let Some(cell) = cells.get(column) else { return };
             let palette = theme::palette(ui);
-            let role = imported.preview.roles.get(column).copied().unwrap_or(Role::Ignore);
+            let role = role_of(imported, column);
             let is_marked = marks.is_some_and(|marks| marks.contains(&column));
             if is_marked {
                 let ground = ui.max_rect().shrink2(vec2(1.0, 1.0));
@@ -165,15 +186,13 @@ fn cells(
                 _ => palette.text,
             };
             let text = number_text(cell.as_str()).color(color);
-            let is_text = matches!(role, Role::Label | Role::Side | Role::Used | Role::Profile | Role::Ignore);
-            let layout =
-                if is_text { Layout::left_to_right(Align::Center) } else { Layout::right_to_left(Align::Center) };
-            ui.with_layout(layout, |ui| {
+            ui.with_layout(cell_layout(role), |ui| {
                 ui.add_space(8.0);
                 ui.add(Label::new(text).truncate());
             });
         });
     }
+    row.col(|_| {});
 }
 
 /// What was left out and what else to know.

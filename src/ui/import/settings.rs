@@ -144,10 +144,10 @@ fn poses(ui: &mut Ui, current: &ImportOptions, typed: &mut Typed, set: Set<'_>) 
         set_notation(changed);
     }
     let mut is_inverse = notation.is_inverse;
-    if fields::row(ui, "", |ui| ui.checkbox(&mut is_inverse, words::INVERSE)).changed() {
-        set_notation(PoseNotation { is_inverse, ..notation });
-    }
     user_frame(ui, current, &notation, typed, set);
+    if ui.checkbox(&mut is_inverse, words::INVERSE).changed() {
+        set(&|options| options.notation = Some(PoseNotation { is_inverse, ..notation }));
+    }
 }
 
 fn orientation(ui: &mut Ui, notation: &PoseNotation) -> Option<PoseNotation> {
@@ -231,7 +231,7 @@ fn profiles(ui: &mut Ui, current: &ImportOptions, set: Set<'_>) {
         set(&|options| options.profile_length_unit = Some(unit));
     }
     let mut is_mirrored = current.is_z_mirrored;
-    if fields::row(ui, "", |ui| ui.checkbox(&mut is_mirrored, words::MIRROR_Z)).changed() {
+    if ui.checkbox(&mut is_mirrored, words::MIRROR_Z).changed() {
         set(&|options| options.is_z_mirrored = is_mirrored);
     }
 }
