@@ -58,10 +58,9 @@ fn sample(name: &str) -> Session {
 
 #[test]
 fn the_tables_of_the_paper_are_read_from_its_text() {
-    for (file, expected) in [
-        ("printed-markdown.md", "lin-mu-2019-table-1.json"),
-        ("printed-largest-arc.md", "lin-mu-2019-table-2.json"),
-    ] {
+    for (file, expected) in
+        [("printed-markdown.md", "lin-mu-2019-table-1.json"), ("printed-largest-arc.md", "lin-mu-2019-table-2.json")]
+    {
         let imported = import_file(file);
         assert_eq!(imported.parts[0].kind, Kind::PrintedTable);
         assert!(imported.problems.is_empty(), "{:?}", imported.problems);
