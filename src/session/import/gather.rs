@@ -37,6 +37,12 @@ pub(super) struct RawPose<'t> {
     pub step_mm: Option<f64>,
     /// Name or number of its profile.
     pub profile: Option<&'t str>,
+    /// Whether it is a further capture of the station before, if that has the same label.
+    pub may_continue: bool,
+    /// Whether its source says that it is in the base, whatever the user frame of the others.
+    pub is_in_base: bool,
+    /// Whether its source says that it is the flange's, whatever the tool of the others.
+    pub is_of_flange: bool,
 }
 
 /// What belongs to a capture until its profile is found.
@@ -93,6 +99,10 @@ impl Gathered {
         &self.notation
     }
 
+    pub const fn has_user_frame(&self) -> bool {
+        self.base_from_user.is_some()
+    }
+
     pub const fn num_poses(&self) -> usize {
         self.num_poses
     }
@@ -126,8 +136,13 @@ impl Gathered {
     }
 
     fn capture(&mut self, raw: &RawPose<'_>) -> Result<Capture, (String, String)> {
-        let user_from_flange = self.notation.base_from_flange(raw.numbers).map_err(|problem| not_a_pose(&problem))?;
-        let base_from_flange = match &self.base_from_user {
+        let notation = match raw.is_of_flange {
+            true => PoseNotation { flange_from_tcp: None, ..self.notation },
+            false => self.notation,
+        };
+        let base_from_user = self.base_from_user.filter(|_| !raw.is_in_base);
+        let user_from_flange = notation.base_from_flange(raw.numbers).map_err(|problem| not_a_pose(&problem))?;
+        let base_from_flange = match &base_from_user {
             Some(base_from_user) => *base_from_user * user_from_flange,
             None => user_from_flange,
         };
@@ -152,10 +167,9 @@ impl Gathered {
         }
         Ok(Capture {
             base_from_flange,
-            written_angles: if self.base_from_user.is_none() {
-                written_angles(raw.numbers, &self.notation)
-            } else {
-                None
+            written_angles: match base_from_user {
+                Some(_) => None,
+                None => written_angles(raw.numbers, &notation),
             },
             reading,
             step_mm: raw.step_mm,
@@ -167,7 +181,7 @@ impl Gathered {
         self.num_poses += 1;
         let wanted = raw.label.map(usable_label).filter(|label| !label.is_empty());
         let continues = match (&wanted, self.stations.last()) {
-            (Some(wanted), Some(last)) => *wanted == last.label,
+            (Some(wanted), Some(last)) => raw.may_continue && *wanted == last.label,
             _ => false,
         };
         if continues {

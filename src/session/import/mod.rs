@@ -3,16 +3,22 @@
 //! Text is recognised, read with options that can be changed while looking at a preview, and ends as stations. Nothing is
 //! dropped silently: what could not be read is listed with file, line and column.
 
+mod abb;
+mod fanuc;
 mod folder;
 mod gather;
 mod header;
+mod kuka;
 mod matching;
 mod printed;
 mod profiles;
+mod program;
 mod read;
 mod recognise;
+mod scan;
 mod table;
 mod text;
+mod ur;
 
 use std::path::PathBuf;
 
@@ -203,6 +209,11 @@ pub enum Note {
     SourcesLeftOut {
         /// Their names.
         names: Vec<String>,
+    },
+    /// Positions for several groups of axes: the first group was read.
+    OtherGroups {
+        /// How many.
+        num_poses: usize,
     },
     /// Poses given as joint angles only, left out.
     JointPoses {

@@ -6,7 +6,7 @@ use crate::geometry::{PoseNotation, Vec3};
 use crate::session::Published;
 
 use super::gather::{Gathered, RawPose};
-use super::text::{half_width, lines, number};
+use super::text::{excerpt, half_width, lines, number};
 use super::{Note, Preview, Role, Source};
 
 /// Without a value for so many lines, what follows is another table.
@@ -37,7 +37,24 @@ struct Row {
     number: Option<u32>,
     values: [f64; NUM_SLOTS],
     /// A value that is no number: where, and what stands there.
-    bad: Option<(usize, usize, String)>,
+    bad: Option<((usize, usize), Box<str>)>,
+}
+
+impl Table {
+    /// Begins a station; the one before is set aside if it is no pose, so that a text of many beginnings stays small.
+    fn begin(&mut self, row: Row) {
+        self.set_aside_incomplete();
+        self.rows.push(row);
+    }
+
+    fn set_aside_incomplete(&mut self) {
+        if let Some(last) = self.rows.pop_if(|row| !row.is_pose())
+            && self.incomplete.len() < super::MAX_PROBLEMS
+        {
+            let missing = last.values.iter().position(|value| value.is_nan()).unwrap_or_default();
+            self.incomplete.push((last.at, missing));
+        }
+    }
 }
 
 impl Row {
@@ -56,6 +73,8 @@ impl Row {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Table {
     rows: Vec<Row>,
+    /// Stations without a whole pose: where, and what is missing.
+    incomplete: Vec<((usize, usize), usize)>,
     caption: String,
 }
 
@@ -77,6 +96,7 @@ pub(super) fn find(text: &str) -> Option<Tables> {
             close(&mut table, &mut tables);
             caption = Some((line_number, line.trim()));
         }
+        let (mut counted, mut column) = (0, 1);
         for (byte, slot, value_text) in assignments(line) {
             if line_number > last_line + MAX_GAP_LINES + 1 {
                 close(&mut table, &mut tables);
@@ -89,24 +109,21 @@ pub(super) fn find(text: &str) -> Option<Tables> {
             {
                 table.caption = text.chars().take(MAX_CAPTION_CHARS).collect();
             }
-            let column = || line[..byte].chars().count() + 1;
+            column += line[counted..byte].chars().count();
+            counted = byte;
+            let at = (line_number, column);
             let slot = match table.rows.last().and_then(|row| free_slot(row, slot)) {
                 Some(slot) => slot,
                 None => {
                     let number = leading_number(line);
-                    let at = (line_number, column());
-                    table.rows.push(Row { at, number, values: [f64::NAN; NUM_SLOTS], bad: None });
+                    table.begin(Row { at, number, values: [f64::NAN; NUM_SLOTS], bad: None });
                     slot
                 }
             };
             if let Some(row) = table.rows.last_mut() {
-                match number(value_text, false) {
-                    Some(value) => row.values[slot] = value,
-                    None if row.bad.is_none() => {
-                        row.values[slot] = f64::INFINITY;
-                        row.bad = Some((line_number, column(), value_text.chars().take(40).collect()));
-                    }
-                    None => row.values[slot] = f64::INFINITY,
+                row.values[slot] = number(value_text, false).unwrap_or(f64::INFINITY);
+                if row.values[slot].is_infinite() && row.bad.is_none() {
+                    row.bad = Some((at, excerpt(value_text).into()));
                 }
             }
         }
@@ -116,7 +133,8 @@ pub(super) fn find(text: &str) -> Option<Tables> {
 }
 
 fn close(table: &mut Table, tables: &mut Option<Tables>) {
-    let table = std::mem::take(table);
+    let mut table = std::mem::take(table);
+    table.set_aside_incomplete();
     if table.rows.iter().any(|row| row.is_pose() && row.bad.is_none()) {
         match tables {
             Some(tables) => tables.num_more += 1,
@@ -240,6 +258,10 @@ pub(super) fn read(
             _ => Role::Ignore,
         })
         .collect();
+    for (at, missing) in &table.incomplete {
+        let found = format!("a station without {}", NAMES[*missing]);
+        gathered.problem(&source.name, *at, &found, "q0 to q3 and t1 to t3");
+    }
     let mut published = Published { caption: table.caption.clone(), ..Published::default() };
     for row in &table.rows {
         preview.num_rows += 1;
@@ -247,14 +269,8 @@ pub(super) fn read(
             let shown = row.values.iter().map(|v| if v.is_finite() { v.to_string() } else { String::new() });
             preview.rows.push((row.at.0, shown.collect()));
         }
-        if let Some((line, column, found)) = &row.bad {
-            gathered.problem(&source.name, (*line, *column), found, "a number");
-            continue;
-        }
-        if !row.is_pose() {
-            let missing = row.values.iter().position(|value| value.is_nan()).unwrap_or_default();
-            let found = format!("a station without {}", NAMES[missing]);
-            gathered.problem(&source.name, row.at, &found, "q0 to q3 and t1 to t3");
+        if let Some((at, found)) = &row.bad {
+            gathered.problem(&source.name, *at, found, "a number");
             continue;
         }
         let [q0, q1, q2, q3, t1, t2, t3, ..] = row.values;

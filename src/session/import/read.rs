@@ -10,7 +10,10 @@ use super::gather::Gathered;
 use super::profiles::{self, NamedProfile};
 use super::recognise::{Recognised, recognise};
 use super::text::{excerpt, without_mark};
-use super::{ImportError, ImportOptions, Imported, Kind, Note, Part, Preview, Source, matching, printed, table};
+use super::{
+    ImportError, ImportOptions, Imported, Kind, Note, Part, Preview, Source, abb, fanuc, kuka, matching, printed,
+    table, ur,
+};
 
 /// How far the import is, for those who wait for it.
 pub(super) struct Progress<'w> {
@@ -126,6 +129,30 @@ impl<'o> Import<'o> {
                 self.gathered.set_notation(notation, options.base_from_user_frame);
                 self.imported.published = printed::read(source, &tables, &mut self.gathered, &mut preview);
                 filled.notation = Some(notation);
+            }
+            Recognised::Program(kind) => {
+                let mut frame = options.base_from_user_frame;
+                let recognised = match kind {
+                    Kind::AbbModule => {
+                        let frames = abb::frames(text);
+                        frame = frame.or(frames.base_from_user_frame);
+                        abb::notation(&frames, self.fallback)
+                    }
+                    Kind::KukaProgram => kuka::notation(self.fallback),
+                    Kind::UrScript => ur::notation(text, self.fallback),
+                    _ => fanuc::notation(self.fallback),
+                };
+                let notation = options.notation.unwrap_or(recognised);
+                self.gathered.set_notation(notation, frame);
+                let read = match kind {
+                    Kind::AbbModule => abb::read,
+                    Kind::KukaProgram => kuka::read,
+                    Kind::UrScript => ur::read,
+                    _ => fanuc::read,
+                };
+                read(source, text, &mut self.gathered, &mut preview, progress)?;
+                filled.notation = Some(notation);
+                filled.base_from_user_frame = frame;
             }
             Recognised::Table(Kind::PoseTable, layout, columns) => {
                 let notation = options.notation.unwrap_or_else(|| table::notation(&layout, &columns, self.fallback));

@@ -3,7 +3,7 @@
 use crate::geometry::PoseNotation;
 
 use super::table::{self, Columns, Layout};
-use super::{ImportOptions, Kind, Role, printed};
+use super::{ImportOptions, Kind, Role, abb, fanuc, kuka, printed, ur};
 
 /// What was found on the way and is needed for reading.
 pub(super) enum Recognised {
@@ -13,13 +13,15 @@ pub(super) enum Recognised {
     Table(Kind, Box<Layout>, Columns),
     /// Named values.
     Printed(Box<printed::Tables>),
+    /// A robot's program.
+    Program(Kind),
 }
 
 impl Recognised {
     pub const fn kind(&self) -> Kind {
         match self {
             Self::Session => Kind::Session,
-            Self::Table(kind, ..) => *kind,
+            Self::Table(kind, ..) | Self::Program(kind) => *kind,
             Self::Printed(_) => Kind::PrintedTable,
         }
     }
@@ -47,6 +49,9 @@ pub(super) fn recognise(
             let columns = table::columns(&layout, options, notation);
             return Some(Recognised::Table(kind, Box::new(layout), columns));
         }
+        Some(kind @ (Kind::FanucProgram | Kind::AbbModule | Kind::KukaProgram | Kind::UrScript)) => {
+            return Some(Recognised::Program(kind));
+        }
         _ => {}
     }
     if text.trim_start().starts_with('{') && text.contains("\"handeye-session\"") {
@@ -54,6 +59,15 @@ pub(super) fn recognise(
     }
     if let Some(tables) = printed::find(text) {
         return Some(Recognised::Printed(Box::new(tables)));
+    }
+    let programs: [(Kind, fn(&str) -> bool); 4] = [
+        (Kind::FanucProgram, fanuc::is_program),
+        (Kind::AbbModule, abb::is_program),
+        (Kind::KukaProgram, kuka::is_program),
+        (Kind::UrScript, ur::is_script),
+    ];
+    if let Some((kind, _)) = programs.iter().find(|(_, is_one)| is_one(text)) {
+        return Some(Recognised::Program(*kind));
     }
     let layout = table::layout(text, options)?;
     let columns = table::columns(&layout, options, notation);

@@ -465,6 +465,7 @@ fn row<'t>(
         is_disabled,
         step_mm,
         profile: text(places.profile),
+        may_continue: true,
         ..RawPose::default()
     })
 }
