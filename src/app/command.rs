@@ -1,12 +1,34 @@
 //! Everything a user can ask the workbench to do.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::calibrate::SideChoice;
 use crate::diagnose::Remedy;
 use crate::plan::Limits;
 use crate::session::import::ImportOptions;
 use crate::session::{Edit, Target};
+
+impl Command {
+    /// Reads what a user has pointed at: a session is opened, anything else goes to the import's preview.
+    #[must_use]
+    pub fn to_read(mut paths: Vec<PathBuf>) -> Self {
+        match paths.pop() {
+            Some(only) if paths.is_empty() && names_a_session(&only) => Self::Open(only),
+            last => {
+                paths.extend(last);
+                Self::Import(paths)
+            }
+        }
+    }
+}
+
+/// Sessions are JSON; of a file without an ending nothing else is known.
+fn names_a_session(path: &Path) -> bool {
+    match path.extension() {
+        Some(ending) => ending.eq_ignore_ascii_case("json") && !path.is_dir(),
+        None => !path.is_dir(),
+    }
+}
 
 /// Where imported stations go.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,8 +2,9 @@
 
 use egui::{Key, KeyboardShortcut, Modifiers};
 
-use crate::app::Workbench;
-use crate::text::{document as document_words, shell as words};
+use crate::app::{Document, Workbench};
+use crate::session::{Capture, Reading};
+use crate::text::{document as document_words, import as import_words, shell as words};
 
 use super::rail::Step;
 
@@ -14,6 +15,18 @@ pub enum Action {
     Open,
     /// Opens a sample.
     OpenSample(usize),
+    /// Asks for files of poses or profiles and shows the import's preview.
+    Import,
+    /// Asks for a folder of them.
+    ImportFolder,
+    /// Asks the system for the text on the clipboard and shows the preview of that.
+    Paste,
+    /// Asks for a session whose stations are to be added to the open one.
+    AddSession,
+    /// Asks for a file and writes the poses as CSV.
+    ExportPoses,
+    /// Asks for a folder and writes the profiles as CSV.
+    ExportProfiles,
     /// Saves to the session's file, asking for one where there is none.
     Save,
     /// Asks for a file and saves there.
@@ -35,10 +48,11 @@ pub enum Action {
 }
 
 /// All actions with a shortcut. Those with more modifiers come first, as a shortcut also matches with fewer.
-const WITH_SHORTCUT: [Action; 9] = [
+const WITH_SHORTCUT: [Action; 10] = [
     Action::SaveAs,
     Action::Redo,
     Action::Open,
+    Action::Import,
     Action::Save,
     Action::Undo,
     Action::Close,
@@ -61,7 +75,15 @@ impl Action {
             Self::Redo => (CTRL_SHIFT, Key::Z),
             Self::History => (Modifiers::COMMAND, Key::H),
             Self::Help => (Modifiers::NONE, Key::F1),
-            Self::OpenSample(_) | Self::GoTo(_) => return None,
+            Self::Import => (Modifiers::COMMAND, Key::I),
+            // Pasting has a key too, but the system turns that into the text itself.
+            Self::OpenSample(_)
+            | Self::GoTo(_)
+            | Self::ImportFolder
+            | Self::Paste
+            | Self::AddSession
+            | Self::ExportPoses
+            | Self::ExportProfiles => return None,
         };
         Some(KeyboardShortcut::new(modifiers, key))
     }
@@ -73,6 +95,12 @@ impl Action {
         match self {
             Self::Open => words::OPEN.to_owned(),
             Self::OpenSample(_) => words::OPEN_SAMPLE.to_owned(),
+            Self::Import => import_words::IMPORT.to_owned(),
+            Self::ImportFolder => import_words::IMPORT_FOLDER.to_owned(),
+            Self::Paste => import_words::PASTE.to_owned(),
+            Self::AddSession => import_words::ADD_SESSION.to_owned(),
+            Self::ExportPoses => import_words::EXPORT_POSES.to_owned(),
+            Self::ExportProfiles => import_words::EXPORT_PROFILES.to_owned(),
             Self::Save => words::SAVE.to_owned(),
             Self::SaveAs => words::SAVE_AS.to_owned(),
             Self::Close => words::CLOSE.to_owned(),
@@ -100,16 +128,38 @@ impl Action {
     pub fn refusal(self, workbench: &Workbench) -> Option<&'static str> {
         let document = workbench.document();
         match self {
-            Self::Save | Self::SaveAs | Self::Close | Self::History => document.is_none().then_some(words::NO_DOCUMENT),
+            Self::Save | Self::SaveAs | Self::Close | Self::History | Self::AddSession => {
+                document.is_none().then_some(words::NO_DOCUMENT)
+            }
+            Self::ExportPoses | Self::ExportProfiles => export_refusal(self, document),
             Self::Undo => document
                 .is_none_or(|document| document.history.undo_label().is_none())
                 .then_some(words::NOTHING_TO_UNDO),
             Self::Redo => document
                 .is_none_or(|document| document.history.redo_label().is_none())
                 .then_some(words::NOTHING_TO_REDO),
-            Self::Open | Self::OpenSample(_) | Self::Quit | Self::Help | Self::GoTo(_) => None,
+            Self::Open
+            | Self::OpenSample(_)
+            | Self::Import
+            | Self::ImportFolder
+            | Self::Paste
+            | Self::Quit
+            | Self::Help
+            | Self::GoTo(_) => None,
         }
     }
+}
+
+fn export_refusal(action: Action, document: Option<&Document>) -> Option<&'static str> {
+    let Some(document) = document else { return Some(words::NO_DOCUMENT) };
+    let stations = &document.session.stations;
+    let is_profile = |capture: &Capture| matches!(capture.reading, Reading::Profile(_));
+    if stations.is_empty() {
+        return Some(import_words::NO_STATIONS);
+    }
+    let needs_profiles = action == Action::ExportProfiles;
+    let lacks_profiles = || !stations.iter().any(|station| station.captures.iter().any(is_profile));
+    (needs_profiles && lacks_profiles()).then_some(import_words::NO_PROFILES)
 }
 
 /// What other programs use for redo works as well.

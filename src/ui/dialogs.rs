@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use egui::{Context, Frame, Grid, Id, Key, Modal, TextEdit, Ui, WidgetInfo};
 
 use crate::app::Workbench;
-use crate::text::{document as document_words, shell as words};
+use crate::text::{document as document_words, import as import_words, shell as words};
 
 use super::actions::{Action, OTHER_REDO};
+use super::file_dialog::Purpose;
 use super::{theme, widgets};
 
 /// Width of a question, points.
@@ -102,9 +103,10 @@ fn question_heading(ui: &mut Ui, text: &str) {
     ui.add_space(8.0);
 }
 
-/// A path being typed because there is no system dialog to save with.
+/// A path being typed because there is no system dialog to choose it with.
 #[derive(Clone, Debug)]
 pub struct SavePath {
+    purpose: Purpose,
     text: String,
     own_file: Option<PathBuf>,
     to_replace: Option<PathBuf>,
@@ -114,7 +116,7 @@ pub struct SavePath {
 /// What came of typing a path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SavePathAnswer {
-    /// Save there.
+    /// Save there, or read it: what it was asked for.
     Save(PathBuf),
     /// Thought better of it.
     Cancel,
@@ -124,7 +126,19 @@ impl SavePath {
     /// Starts with a suggestion; `own_file` is the document's, which is replaced without a question.
     #[must_use]
     pub const fn new(suggestion: String, own_file: Option<PathBuf>) -> Self {
-        Self { text: suggestion, own_file, to_replace: None, is_new: true }
+        Self { purpose: Purpose::Save, text: suggestion, own_file, to_replace: None, is_new: true }
+    }
+
+    /// Starts with a suggestion for something else than saving.
+    #[must_use]
+    pub const fn to(purpose: Purpose, suggestion: String) -> Self {
+        Self { purpose, text: suggestion, own_file: None, to_replace: None, is_new: true }
+    }
+
+    /// What the path is for.
+    #[must_use]
+    pub const fn purpose(&self) -> Purpose {
+        self.purpose
     }
 
     /// Asks for the path, and again before another file is replaced.
@@ -137,7 +151,7 @@ impl SavePath {
         }
         let answer = self.ask_path(ctx)?;
         match answer {
-            SavePathAnswer::Save(path) if path.exists() && !self.is_own_file(&path) => {
+            SavePathAnswer::Save(path) if self.purpose.writes_a_file() && path.exists() && !self.is_own_file(&path) => {
                 self.to_replace = Some(path);
                 ctx.request_repaint();
                 None
@@ -155,7 +169,7 @@ impl SavePath {
     fn ask_path(&mut self, ctx: &Context) -> Option<SavePathAnswer> {
         let mut answer = None;
         let response = modal(ctx, "save as").show(ctx, |ui| {
-            question_heading(ui, words::SAVE_AS_TITLE);
+            question_heading(ui, self.purpose.title());
             ui.label(theme::dim(ui, words::NO_FILE_DIALOG));
             ui.add_space(8.0);
             let field = ui.add(TextEdit::singleline(&mut self.text).desired_width(f32::INFINITY));
@@ -170,7 +184,7 @@ impl SavePath {
             let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
             ui.add_space(16.0);
             ui.horizontal(|ui| {
-                if widgets::primary_button(ui, words::SAVE).clicked() || entered {
+                if widgets::primary_button(ui, self.purpose.button()).clicked() || entered {
                     answer = Some(SavePathAnswer::Save(PathBuf::from(self.text.trim())));
                 }
                 if ui.button(words::CANCEL).clicked() {
@@ -218,6 +232,7 @@ pub fn help(ctx: &Context, workbench: &Workbench, open: &mut bool) {
         Grid::new("shortcuts").num_columns(2).spacing([24.0, 4.0]).show(ui, |ui| {
             for action in [
                 Action::Open,
+                Action::Import,
                 Action::Save,
                 Action::SaveAs,
                 Action::Close,
@@ -235,6 +250,7 @@ pub fn help(ctx: &Context, workbench: &Workbench, open: &mut bool) {
                     key_row(ui, &keys, &action.label(workbench));
                 }
             }
+            key_row(ui, import_words::PASTE_KEYS, import_words::PASTE);
             key_row(ui, "1 2 3 4 5", words::KEYS_RAIL);
             key_row(ui, "↑ ↓", words::KEYS_LIST);
             key_row(ui, "← →", words::KEYS_STEPS);

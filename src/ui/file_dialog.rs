@@ -6,7 +6,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::app::jobs::Wake;
-use crate::text::shell as words;
+use crate::text::{import as import_words, shell as words};
 
 /// Nobody cancels a dialog faster than this; so quick a "nothing chosen" means that no dialog came up.
 const FASTEST_CANCEL: Duration = Duration::from_millis(500);
@@ -14,17 +14,63 @@ const FASTEST_CANCEL: Duration = Duration::from_millis(500);
 /// What the dialog is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
-    /// Choosing a file to read.
+    /// Choosing a session to open.
     Open,
-    /// Choosing a file to write.
+    /// Choosing a file to save the session to.
     Save,
+    /// Choosing files of poses and profiles.
+    ImportFiles,
+    /// Choosing a folder of them.
+    ImportFolder,
+    /// Choosing a session whose stations are added to the open one.
+    AddSession,
+    /// Choosing a file to write the poses to.
+    ExportPoses,
+    /// Choosing a folder to write the profiles to.
+    ExportProfiles,
+}
+
+/// Files of poses and profiles by their endings.
+const IMPORT_ENDINGS: [&str; 12] =
+    ["csv", "tsv", "txt", "ls", "mod", "src", "dat", "script", "urscript", "yaml", "yml", "json"];
+
+impl Purpose {
+    /// The heading where a path is typed for it.
+    #[must_use]
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Open => words::OPEN,
+            Self::Save => words::SAVE_AS_TITLE,
+            Self::ImportFiles | Self::ImportFolder => import_words::IMPORT_PATH_TITLE,
+            Self::AddSession => import_words::ADD_SESSION_PATH_TITLE,
+            Self::ExportPoses => import_words::EXPORT_POSES_TITLE,
+            Self::ExportProfiles => import_words::EXPORT_PROFILES_TITLE,
+        }
+    }
+
+    /// The button below that path.
+    #[must_use]
+    pub const fn button(self) -> &'static str {
+        match self {
+            Self::Open => words::OPEN,
+            Self::Save => words::SAVE,
+            Self::ImportFiles | Self::ImportFolder | Self::AddSession => import_words::IMPORT_BUTTON,
+            Self::ExportPoses | Self::ExportProfiles => import_words::EXPORT_BUTTON,
+        }
+    }
+
+    /// Whether a file is written, so that one that is there is replaced.
+    #[must_use]
+    pub const fn writes_a_file(self) -> bool {
+        matches!(self, Self::Save | Self::ExportPoses)
+    }
 }
 
 /// What came of a dialog.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Answer {
-    /// A file was chosen.
-    Chosen(Purpose, PathBuf),
+    /// At least one path was chosen; more than one only for [`Purpose::ImportFiles`].
+    Chosen(Purpose, Vec<PathBuf>),
     /// The user thought better of it.
     Cancelled,
     /// The system has no dialog to offer.
@@ -83,13 +129,23 @@ impl FileDialog {
 
 fn ask(purpose: Purpose, suggested_name: &str) -> Answer {
     let start = Instant::now();
-    let dialog = rfd::FileDialog::new().add_filter(words::FILE_FILTER, &["json"]);
+    let dialog = rfd::FileDialog::new();
+    let sessions = |dialog: rfd::FileDialog| dialog.add_filter(words::FILE_FILTER, &["json"]);
+    let all = |dialog: rfd::FileDialog| dialog.add_filter(import_words::ALL_FILTER, &["*"]);
+    let one = |path: PathBuf| vec![path];
     let chosen = match purpose {
-        Purpose::Open => dialog.pick_file(),
-        Purpose::Save => dialog.set_file_name(suggested_name).save_file(),
+        Purpose::Open => all(sessions(dialog)).pick_file().map(one),
+        Purpose::Save => sessions(dialog).set_file_name(suggested_name).save_file().map(one),
+        Purpose::ImportFiles => all(dialog.add_filter(import_words::IMPORT_FILTER, &IMPORT_ENDINGS)).pick_files(),
+        Purpose::AddSession => sessions(dialog).pick_file().map(one),
+        Purpose::ExportPoses => {
+            let dialog = dialog.add_filter(import_words::CSV_FILTER, &["csv"]);
+            dialog.set_file_name(suggested_name).save_file().map(one)
+        }
+        Purpose::ImportFolder | Purpose::ExportProfiles => dialog.pick_folder().map(one),
     };
-    match chosen {
-        Some(path) => Answer::Chosen(purpose, path),
+    match chosen.filter(|paths| !paths.is_empty()) {
+        Some(paths) => Answer::Chosen(purpose, paths),
         None if start.elapsed() < FASTEST_CANCEL => Answer::Unavailable(purpose),
         None => Answer::Cancelled,
     }

@@ -12,6 +12,7 @@ pub mod dialogs;
 pub mod figures;
 pub mod file_dialog;
 pub mod history;
+pub mod import;
 pub mod inspector;
 pub mod persisted;
 pub mod poses;

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use egui::ThemePreference;
 use serde::{Deserialize, Serialize};
 
+use super::import::ImportMemory;
+
 /// Recent files kept.
 const MAX_RECENT: usize = 8;
 
@@ -44,11 +46,19 @@ pub struct Persisted {
     pub recent_files: Vec<PathBuf>,
     /// Whether the inspector is shown.
     pub inspector_open: bool,
+    /// How tables were read that were imported.
+    pub imports: ImportMemory,
 }
 
 impl Default for Persisted {
     fn default() -> Self {
-        Self { theme: ThemeChoice::default(), scale: 1.0, recent_files: Vec::new(), inspector_open: true }
+        Self {
+            theme: ThemeChoice::default(),
+            scale: 1.0,
+            recent_files: Vec::new(),
+            inspector_open: true,
+            imports: ImportMemory::default(),
+        }
     }
 }
 

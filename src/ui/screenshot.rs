@@ -68,7 +68,7 @@ pub fn render(
         sender.try_send(()).ok();
     });
     if let Some(path) = session {
-        shell.workbench_mut().apply(Command::Open(path.to_owned()));
+        shell.request(Command::Open(path.to_owned()));
     }
     let mut renderer = SoftwareRenderer::default();
     let mut frames = Frames { ctx, size, renderer: &mut renderer };

@@ -44,8 +44,15 @@ fn menus(ui: &mut Ui, workbench: &Workbench, persisted: &mut Persisted, actions:
             }
         });
         ui.separator();
+        item(ui, workbench, Action::Import, actions);
+        item(ui, workbench, Action::ImportFolder, actions);
+        item(ui, workbench, Action::Paste, actions);
+        item(ui, workbench, Action::AddSession, actions);
+        ui.separator();
         item(ui, workbench, Action::Save, actions);
         item(ui, workbench, Action::SaveAs, actions);
+        item(ui, workbench, Action::ExportPoses, actions);
+        item(ui, workbench, Action::ExportProfiles, actions);
         ui.separator();
         item(ui, workbench, Action::Close, actions);
         item(ui, workbench, Action::Quit, actions);

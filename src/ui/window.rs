@@ -68,7 +68,7 @@ impl Window {
             shell.workbench_mut().keep_copies(RecoverySettings::new(folder));
         }
         if let Some(file) = start.file {
-            shell.workbench_mut().apply(Command::Open(file));
+            shell.request(Command::Open(file));
         }
         Self { shell }
     }

@@ -14,12 +14,22 @@ impl Workbench {
     /// Makes an edit; one that cannot be made is told, and nothing changes.
     pub(super) fn edit(&mut self, edit: &Edit, gesture: Option<u64>) {
         let Some(document) = &self.document else { return };
+        let label = edit_label(edit, &document.session);
+        self.edit_as(edit, gesture, label);
+    }
+
+    /// The same, under a label that says more than the edit knows. Answers whether it could be made.
+    pub(super) fn edit_as(&mut self, edit: &Edit, gesture: Option<u64>, label: String) -> bool {
+        let Some(document) = &self.document else { return false };
         match edit.apply(&document.session) {
             Ok(changed) => {
-                let label = edit_label(edit, &document.session);
                 self.replace_session(changed, label, gesture);
+                true
             }
-            Err(refusal) => self.notify(NoticeKind::Error, refusal.to_string()),
+            Err(refusal) => {
+                self.notify(NoticeKind::Error, refusal.to_string());
+                false
+            }
         }
     }
 

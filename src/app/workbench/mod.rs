@@ -23,6 +23,7 @@ use super::{Command, Document};
 
 use self::files::{Loaded, Look, Save, SaveOutcome};
 pub use self::imports::ImportDraft;
+use self::imports::Imports;
 pub use self::studies::Results;
 
 /// How serious a notice is.
@@ -89,7 +90,7 @@ pub struct Workbench {
     plan: Study<Result<Plan, PlanRefusal>>,
     readings: Study<Vec<ReadingFit>>,
     bootstrap: Study<Bootstrap>,
-    import: Option<ImportDraft>,
+    imports: Imports,
 }
 
 impl Workbench {
@@ -117,7 +118,7 @@ impl Workbench {
             plan: Study::default(),
             readings: Study::default(),
             bootstrap: Study::default(),
-            import: None,
+            imports: Imports::default(),
         }
     }
 
@@ -187,12 +188,6 @@ impl Workbench {
         &self.bootstrap
     }
 
-    /// The preview of an import, while one is open.
-    #[must_use]
-    pub const fn import(&self) -> Option<&ImportDraft> {
-        self.import.as_ref()
-    }
-
     /// Notices not yet dismissed, oldest first.
     #[must_use]
     pub fn notices(&self) -> &[Notice] {
@@ -228,6 +223,7 @@ impl Workbench {
             || self.plan.is_running()
             || self.readings.is_running()
             || self.bootstrap.is_running()
+            || self.imports.is_busy()
     }
 
     /// Carries out one command.
@@ -315,7 +311,7 @@ impl Workbench {
                 self.notify_broken(what, &ended);
             }
         }
-        changed
+        self.poll_imports() || changed
     }
 
     fn notify(&mut self, kind: NoticeKind, message: String) {

@@ -3,13 +3,33 @@
 //! Text is recognised, read with options that can be changed while looking at a preview, and ends as stations. Nothing is
 //! dropped silently: what could not be read is listed with file, line and column.
 
+mod abb;
+mod fanuc;
+mod folder;
+mod gather;
+mod header;
+mod kuka;
+mod matching;
+mod printed;
+mod profiles;
+mod program;
+mod read;
+mod recognise;
+mod scan;
+mod table;
+mod text;
+mod ur;
+
 use std::path::PathBuf;
 
 use thiserror::Error;
 
 use crate::geometry::PoseNotation;
-use crate::session::{Session, Station, Target};
+use crate::session::{Published, Session, Station, Target};
 use crate::watch::{Cancelled, Watch};
+
+pub use folder::{MAX_FILE_BYTES, MAX_FILES, MAX_TOTAL_BYTES};
+pub use gather::MAX_POSES;
 
 /// A file, or a pasted text, in memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -178,6 +198,23 @@ pub enum Note {
         /// How many.
         num_poses: usize,
     },
+    /// A text with several printed tables: the first was read.
+    OtherTablesLeftOut {
+        /// Caption of the one that was read; may be empty.
+        caption: String,
+        /// How many were left out.
+        num_tables: usize,
+    },
+    /// Sources in which nothing was recognised, left out beside those that were.
+    SourcesLeftOut {
+        /// Their names.
+        names: Vec<String>,
+    },
+    /// Positions for several groups of axes: the first group was read.
+    OtherGroups {
+        /// How many.
+        num_poses: usize,
+    },
     /// Poses given as joint angles only, left out.
     JointPoses {
         /// How many.
@@ -202,6 +239,8 @@ pub struct Imported {
     pub num_problems: usize,
     /// What else to know.
     pub notes: Vec<Note>,
+    /// What a printed table says of the ball.
+    pub published: Option<Published>,
     /// The whole session, where the source is one.
     pub session: Option<Box<Session>>,
 }
@@ -255,17 +294,21 @@ impl From<Cancelled> for ImportError {
     }
 }
 
-/// Reads files, and the files of folders, into memory.
+/// Reads files, and the files of folders, into memory: at most [`MAX_FILE_BYTES`] a file.
+///
+/// Files of a folder are named by their path in it. Hidden files and those that are certainly something else (pictures,
+/// archives) are passed over.
 ///
 /// # Errors
 /// [`ImportError::Unreadable`], [`ImportError::TooLarge`].
 pub fn read_paths(paths: &[PathBuf]) -> Result<Vec<Source>, ImportError> {
-    let name = paths.first().map(|path| path.display().to_string()).unwrap_or_default();
-    Err(ImportError::NotRecognised { file: name, found: "a path".to_owned() })
+    folder::read_paths(paths)
 }
 
 /// Reads sources as the options say, and by recognition where they leave it open; `notation` is taken for poses that
 /// nothing is known of.
+///
+/// A table whose columns are not all known gives no stations, but its preview and a problem that says what is missing.
 ///
 /// # Errors
 /// [`ImportError`] if not a single pose or profile could be read.
@@ -275,10 +318,7 @@ pub fn read(
     notation: &PoseNotation,
     watch: &mut dyn Watch,
 ) -> Result<Imported, ImportError> {
-    watch.report(0, 1)?;
-    let _ = (options, notation);
-    let name = sources.first().map(|source| source.name.clone()).unwrap_or_default();
-    Err(ImportError::NotRecognised { file: name, found: "text".to_owned() })
+    read::read(sources, options, notation, watch)
 }
 
 impl Imported {
@@ -300,7 +340,7 @@ impl Imported {
             target,
             mount: crate::calibrate::Mount::default(),
             stations: self.stations,
-            published: None,
+            published: self.published,
             truth: None,
             unknown: serde_json::Map::new(),
         }

@@ -32,6 +32,12 @@ fn several_label(edits: &[Edit], session: &Session) -> String {
     }
 }
 
+/// Stations that came from elsewhere.
+#[must_use]
+pub fn import_label(num_stations: usize, source: &str) -> String {
+    format!("import {num_stations} station{} from {source}", plural(num_stations))
+}
+
 fn station_name(station_idx: usize, session: &Session) -> String {
     session.stations.get(station_idx).map_or_else(String::new, |station| format!("station {}", station.label))
 }

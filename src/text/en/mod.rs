@@ -9,6 +9,7 @@ pub mod diagnosis;
 pub mod diagnosis_panel;
 pub mod document;
 pub mod edits;
+pub mod import;
 pub mod methods;
 pub mod poses;
 pub mod shell;

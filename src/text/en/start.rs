@@ -22,7 +22,8 @@ pub const CHOOSE_FILE: &str = "Choose a file…";
 /// Button beside the path field.
 pub const OPEN_PATH: &str = "Open";
 /// Hint below.
-pub const DROP_HINT: &str = "Or drop a session file anywhere on this window.";
+pub const DROP_HINT: &str =
+    "Or drop a session, tables of poses, profiles, robot programs or a whole folder anywhere on this window.";
 /// Heading.
 pub const RECENT: &str = "Recent files";
 /// Over a file being dragged in.

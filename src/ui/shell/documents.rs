@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use egui::{Align, Context, Frame, Layout, Margin, Panel, Ui, ViewportCommand};
 
-use crate::app::{Command, Document, NoticeKind, OnDisk};
+use crate::app::{Command, Document, ImportInto, NoticeKind, OnDisk};
 use crate::text::{document as document_words, shell as words};
 use crate::ui::dialogs::{self, ChangedAnswer, SavePath, SavePathAnswer, UnsavedAnswer};
 use crate::ui::file_dialog::{Answer, Purpose};
@@ -19,6 +19,10 @@ const LOOK_SECONDS: f64 = 5.0;
 impl Shell {
     /// Applies a command; one that puts another document on the bench asks first if changes would be lost.
     pub fn request(&mut self, command: Command) {
+        let command = match command {
+            Command::Open(path) => Command::to_read(vec![path]),
+            other => other,
+        };
         let replaces = matches!(
             command,
             Command::Open(_)
@@ -26,6 +30,7 @@ impl Shell {
                 | Command::NewSession(_)
                 | Command::Recover(_)
                 | Command::CloseDocument
+                | Command::FinishImport(ImportInto::NewSession { .. })
         );
         if replaces && self.workbench.document().is_some_and(Document::is_unsaved) {
             self.unsaved_question = Some(Pending::Command(command));
@@ -53,8 +58,8 @@ impl Shell {
             }
             self.step = Step::Session;
         }
-        if matches!(command, Command::NewSession(_)) {
-            // The next thing to do there: import, paste or add.
+        if matches!(command, Command::NewSession(_) | Command::FinishImport(_)) {
+            // The next thing to do there: look at the poses, or import, paste and add some.
             self.step = Step::Poses;
         }
         self.workbench.apply(command);
@@ -88,8 +93,7 @@ impl Shell {
 
     pub(super) fn take_dialog_answer(&mut self) {
         match self.file_dialog.poll() {
-            Some(Answer::Chosen(Purpose::Open, path)) => self.request(Command::Open(path)),
-            Some(Answer::Chosen(Purpose::Save, path)) => self.workbench.apply(Command::SaveAs(path)),
+            Some(Answer::Chosen(purpose, paths)) => self.take_paths(purpose, paths),
             Some(Answer::Unavailable(Purpose::Open)) => {
                 self.step = Step::Session;
                 self.start.ask_for_path(words::NO_FILE_DIALOG);
@@ -99,6 +103,9 @@ impl Shell {
                 let suggestion = folder.join(self.suggested_name());
                 let own_file = self.workbench.document().and_then(|document| document.path.clone());
                 self.save_path = Some(SavePath::new(suggestion.display().to_string(), own_file));
+            }
+            Some(Answer::Unavailable(purpose)) => {
+                self.save_path = Some(SavePath::to(purpose, self.suggested_path(purpose)));
             }
             Some(Answer::Cancelled) => self.after_saving = None,
             None => {}
@@ -154,10 +161,12 @@ impl Shell {
 
     pub(super) fn questions(&mut self, ctx: &Context) {
         dialogs::help(ctx, &self.workbench, &mut self.is_help_open);
-        if let Some(answer) = self.save_path.as_mut().and_then(|save_path| save_path.ask(ctx)) {
+        if let Some((purpose, answer)) =
+            self.save_path.as_mut().and_then(|save_path| Some((save_path.purpose(), save_path.ask(ctx)?)))
+        {
             self.save_path = None;
             match answer {
-                SavePathAnswer::Save(path) => self.workbench.apply(Command::SaveAs(path)),
+                SavePathAnswer::Save(path) => self.take_paths(purpose, vec![path]),
                 SavePathAnswer::Cancel => self.after_saving = None,
             }
         }

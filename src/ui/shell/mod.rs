@@ -1,6 +1,7 @@
 //! The window's frame around the panels, and what it does with actions and commands.
 
 mod documents;
+mod imports;
 mod news;
 
 use std::sync::Arc;
@@ -18,6 +19,7 @@ use super::diagnosis::DiagnosisState;
 use super::dialogs::SavePath;
 use super::file_dialog::{FileDialog, Purpose};
 use super::history::HistoryWindow;
+use super::import::{self, ImportState};
 use super::persisted::Persisted;
 use super::poses::panel::PosesState;
 use super::rail::{self, Step};
@@ -53,6 +55,9 @@ pub struct Shell {
     arcs: ArcsState,
     compare: CompareState,
     diagnosis: DiagnosisState,
+    import: ImportState,
+    /// Frames until a clipboard that was asked for its text counts as empty.
+    paste_patience: Option<u8>,
     persisted: Persisted,
     file_dialog: FileDialog,
     save_path: Option<SavePath>,
@@ -95,6 +100,8 @@ impl Shell {
             arcs: ArcsState::default(),
             compare: CompareState::default(),
             diagnosis: DiagnosisState::default(),
+            import: ImportState::default(),
+            paste_patience: None,
             persisted,
             file_dialog: FileDialog::default(),
             save_path: None,
@@ -146,7 +153,7 @@ impl Shell {
     /// Whether something is being read or solved in the background.
     #[must_use]
     pub const fn is_busy(&self) -> bool {
-        self.workbench.is_busy() || self.start.is_reading()
+        self.workbench.is_busy() || self.start.is_reading() || self.paste_patience.is_some()
     }
 
     /// Takes in finished jobs; also while the window is hidden.
@@ -173,10 +180,21 @@ impl Shell {
         if actions.iter().any(|action| action.takes_what_is_typed()) {
             take_what_is_typed(&ctx);
         }
-        Self::open_dropped_files(&ctx, &mut commands);
+        Self::read_dropped_files(&ctx, &mut commands);
+        self.take_pasted_text(&ctx, &mut commands);
+        let is_importing = self.workbench.import().is_some();
+        if is_importing {
+            actions.retain(|action| *action == Action::Quit);
+        }
+        // What is typed into the preview is not for the panels below it.
+        let events = if is_importing { ctx.input_mut(|input| std::mem::take(&mut input.events)) } else { Vec::new() };
         self.bars(ui, &mut actions, &mut commands);
         self.center(ui, &mut actions, &mut commands);
+        if is_importing {
+            ctx.input_mut(|input| input.events = events);
+        }
         self.history.show(&ctx, &self.workbench, &mut commands);
+        import::show(&ctx, &self.workbench, &mut self.import, &mut self.persisted.imports, &mut commands);
         self.questions(&ctx);
         // What was typed comes first: an action in the same frame is about it.
         for command in std::mem::take(&mut commands) {
@@ -245,7 +263,7 @@ impl Shell {
         });
     }
 
-    fn open_dropped_files(ctx: &Context, commands: &mut Vec<Command>) {
+    fn read_dropped_files(ctx: &Context, commands: &mut Vec<Command>) {
         let (dropped, is_hovering) = ctx.input(|input| {
             let paths: Vec<_> = input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect();
             (paths, !input.raw.hovered_files.is_empty())
@@ -253,13 +271,20 @@ impl Shell {
         if is_hovering {
             drop_overlay(ctx);
         }
-        // One document at a time: of several files, the first.
-        commands.extend(dropped.into_iter().take(1).map(Command::Open));
+        if !dropped.is_empty() {
+            commands.push(Command::to_read(dropped));
+        }
     }
 
     fn perform(&mut self, ctx: &Context, action: Action, commands: &mut Vec<Command>) {
         match action {
-            Action::Open => self.file_dialog.start(Purpose::Open, String::new(), Arc::clone(&self.wake)),
+            Action::Open => self.ask_for_paths(Purpose::Open),
+            Action::Import => self.ask_for_paths(Purpose::ImportFiles),
+            Action::ImportFolder => self.ask_for_paths(Purpose::ImportFolder),
+            Action::AddSession => self.ask_for_paths(Purpose::AddSession),
+            Action::ExportPoses => self.ask_for_paths(Purpose::ExportPoses),
+            Action::ExportProfiles => self.ask_for_paths(Purpose::ExportProfiles),
+            Action::Paste => self.ask_for_clipboard(ctx),
             Action::OpenSample(sample_idx) => commands.push(Command::OpenSample(sample_idx)),
             Action::Save => self.save(),
             Action::SaveAs => self.save_as(),

@@ -15,7 +15,7 @@ use crate::text::shell as shell_words;
 use crate::text::start as words;
 use crate::ui::actions::Action;
 use crate::ui::widgets::{card, primary_button, symbol_button};
-use crate::ui::{PanelContext, theme};
+use crate::ui::{PanelContext, import, theme};
 
 use super::form::FormState;
 use super::model::{SamplePreview, preview_samples};
@@ -148,6 +148,7 @@ fn open_card(
                 }
                 errors(ui, context);
                 ui.label(theme::dim(ui, words::DROP_HINT).small());
+                import::entries(ui, context.actions);
                 recent(ui, context, state, recent_files);
                 offers::new_session(ui, context, &mut state.offers);
             });

@@ -1,0 +1,311 @@
+//! Names of columns, in the many spellings of spreadsheets, teach pendants and other programs.
+
+use crate::geometry::PoseConvention;
+use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
+
+use super::Role;
+use super::text::half_width;
+
+/// What a header says beside the meaning of each column.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Said {
+    pub length_unit: Option<LengthUnit>,
+    pub angle_unit: Option<AngleUnit>,
+    pub orientation: Option<OrientationForm>,
+    pub convention: Option<&'static PoseConvention>,
+}
+
+/// The meaning of a name, before it is known what stands beside it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Word {
+    Position(usize),
+    Point(usize),
+    /// A part of a quaternion: 0 is the real one.
+    Quaternion(usize),
+    /// `q1`: the real part where the four are `q1` to `q4`.
+    Numbered(usize),
+    /// An angle, by its name in one of [`ANGLES`].
+    Angle {
+        family: usize,
+        idx: usize,
+    },
+    Other(Role),
+}
+
+/// Angles that are named together, and the makers that name them so, the usual one first.
+const ANGLES: [(&[[&str; 3]], &[&str]); 9] = [
+    (&[["w", "p", "r"]], &["fanuc-wpr"]),
+    (&[["a", "b", "c"]], &["kuka-abc", "mitsubishi-abc"]),
+    (
+        &[["rx", "ry", "rz"], ["rotx", "roty", "rotz"], ["rotationx", "rotationy", "rotationz"]],
+        &["yaskawa-rxryrz", "ur-rotvec", "staubli-rxryrz", "denso-rxryrz"],
+    ),
+    (&[["rvx", "rvy", "rvz"], ["rotvecx", "rotvecy", "rotvecz"], ["rotvec1", "rotvec2", "rotvec3"]], &["ur-rotvec"]),
+    (&[["o", "a", "t"]], &["kawasaki-oat"]),
+    (&[["a", "e", "r"]], &["comau-aer"]),
+    (&[["u", "v", "w"]], &["epson-uvw"]),
+    (&[["ez", "ey", "ex"]], &["abb-ezeyex"]),
+    (&[["roll", "pitch", "yaw"], ["r", "p", "y"]], &["fanuc-wpr", "yaskawa-rxryrz", "mitsubishi-abc", "denso-rxryrz"]),
+];
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// The plain name and the unit of a header's cell: `Trans X [mm]` is `transx` and `mm`.
+fn name_and_unit(cell: &str) -> (String, Option<String>) {
+    let cell: String = cell.chars().map(half_width).collect::<String>().to_lowercase();
+    let mut unit = None;
+    let mut name = cell.trim().trim_matches('$').to_owned();
+    for (open, close) in [('[', ']'), ('(', ')'), ('{', '}')] {
+        if let Some(start) = name.find(open)
+            && let Some(len) = name[start..].find(close)
+            && start > 0
+        {
+            unit = Some(name[start + 1..start + len].trim().to_owned());
+            name.replace_range(start..=start + len, "");
+        }
+    }
+    for word in ["millimeter", "millimetre", "mm", "m", "deg", "degree", "degrees", "°", "rad"] {
+        for before in ['/', '_', ' '] {
+            let suffix = format!("{before}{word}");
+            if unit.is_none() && name.trim_end().ends_with(&suffix) && name.trim_end().len() > suffix.len() {
+                name.truncate(name.trim_end().len() - suffix.len());
+                unit = Some(word.to_owned());
+            }
+        }
+    }
+    let mut plain: String = name.chars().filter(|c| c.is_alphanumeric() || *c == '#').collect();
+    for prefix in ["pose", "tcp", "robot", "flange", "tool", "actual", "cart"] {
+        let rest = plain.strip_prefix(prefix).filter(|rest| !rest.is_empty());
+        plain = rest.map_or_else(|| plain.clone(), str::to_owned);
+    }
+    (plain, unit)
+}
+
+fn length_unit(unit: &str) -> Option<LengthUnit> {
+    match unit {
+        "mm" | "millimeter" | "millimetre" => Some(LengthUnit::Millimetres),
+        "m" | "meter" | "metre" => Some(LengthUnit::Metres),
+        _ => None,
+    }
+}
+
+fn angle_unit(unit: &str) -> Option<AngleUnit> {
+    match unit {
+        "deg" | "degree" | "degrees" | "°" | "grad" => Some(AngleUnit::Degrees),
+        "rad" | "radian" | "radians" => Some(AngleUnit::Radians),
+        _ => None,
+    }
+}
+
+/// Whether a cell is a unit and nothing else, as in a second row of a header.
+pub(super) fn is_unit(cell: &str) -> bool {
+    let unit = cell.trim().trim_matches(['[', ']', '(', ')']).to_lowercase();
+    matches!(unit.as_str(), "" | "-" | "1") || length_unit(&unit).is_some() || angle_unit(&unit).is_some()
+}
+
+/// All meanings that a name can have; the columns beside it decide.
+fn words(name: &str) -> Vec<Word> {
+    let mut words = Vec::new();
+    let numbered = |prefix: &str| {
+        name.strip_prefix(prefix)
+            .and_then(|digit| digit.parse::<usize>().ok())
+            .filter(|_| name.len() == prefix.len() + 1)
+    };
+    for (idx, axis) in AXES.iter().enumerate() {
+        let is_one_of =
+            |prefixes: &[&str]| prefixes.iter().any(|p| name == format!("{p}{axis}") || name == format!("{axis}{p}"));
+        if is_one_of(&["", "t", "pos", "position", "trans", "translation", "coord", "base", "位置"]) {
+            words.push(Word::Position(idx));
+        }
+        if is_one_of(&["s", "p", "point", "sensor", "ball", "meas", "measured", "centre", "center"]) {
+            words.push(Word::Point(idx));
+        }
+        if is_one_of(&["q", "quat", "quaternion", "orientation", "rot", "ori", "o"]) {
+            words.push(Word::Quaternion(idx + 1));
+        }
+    }
+    if ["w", "qw", "quatw", "quaternionw", "orientationw", "rotw", "oriw", "ow"].contains(&name) {
+        words.push(Word::Quaternion(0));
+    }
+    if let Some(idx) = numbered("t").filter(|idx| (1..=3).contains(idx)) {
+        words.push(Word::Position(idx - 1));
+    }
+    if let Some(idx) = numbered("q").or_else(|| numbered("quat")).filter(|idx| *idx <= 4) {
+        words.push(Word::Numbered(idx));
+    }
+    for (family, (spellings, _)) in ANGLES.iter().enumerate() {
+        for idx in 0..3 {
+            if spellings.iter().any(|names| names[idx] == name) {
+                words.push(Word::Angle { family, idx });
+            }
+        }
+    }
+    let other = match name {
+        "label" | "name" | "no" | "nr" | "num" | "number" | "id" | "station" | "point" | "index" | "idx" | "#"
+        | "序号" | "编号" | "名称" | "pose" | "posename" => Some(Role::Label),
+        "side" => Some(Role::Side),
+        "use" | "used" | "enabled" | "enable" | "active" => Some(Role::Used),
+        "step" => Some(Role::Step),
+        "profile" | "file" | "filename" | "scan" | "profilefile" => Some(Role::Profile),
+        _ => None,
+    };
+    words.extend(other.map(Word::Other));
+    words
+}
+
+/// The roles of the columns that a header names, and what else it says; `None` for the cells that it does not explain.
+///
+/// `notation_id` settles what several makers name alike.
+pub(super) fn roles(cells: &[&str], convention: &'static PoseConvention) -> (Vec<Option<Role>>, Said) {
+    let named: Vec<(Vec<Word>, Option<String>)> = cells
+        .iter()
+        .map(|cell| {
+            let (name, unit) = name_and_unit(cell);
+            (words(&name), unit)
+        })
+        .collect();
+    let mut roles: Vec<Option<Role>> = vec![None; cells.len()];
+    let mut said = Said::default();
+    let find = |roles: &[Option<Role>], wanted: Word| {
+        (0..named.len()).find(|column| roles[*column].is_none() && named[*column].0.contains(&wanted))
+    };
+    // A block is taken as a whole or not at all; the first that fits wins.
+    let take = |roles: &mut Vec<Option<Role>>, block: &[(Word, Role)]| -> Option<Vec<usize>> {
+        let mut taken = roles.clone();
+        let mut columns = Vec::new();
+        for (word, role) in block {
+            let column = find(&taken, *word)?;
+            taken[column] = Some(*role);
+            columns.push(column);
+        }
+        *roles = taken;
+        Some(columns)
+    };
+    let position = [0, 1, 2].map(|idx| (Word::Position(idx), Role::Position(idx)));
+    let point = [0, 1, 2].map(|idx| (Word::Point(idx), Role::Point(idx)));
+    let positions = take(&mut roles, &position).or_else(|| {
+        // Without any other, "px py pz" are the position.
+        let as_position = [0, 1, 2].map(|idx| (Word::Point(idx), Role::Position(idx)));
+        take(&mut roles, &as_position)
+    });
+    let quaternion =
+        |first: usize, word: fn(usize) -> Word| [0, 1, 2, 3].map(|idx| (word(first + idx), Role::Orientation(idx)));
+    let quaternions = [quaternion(0, Word::Quaternion), quaternion(0, Word::Numbered), quaternion(1, Word::Numbered)];
+    let mut angles = None;
+    if let Some(columns) = quaternions.iter().find_map(|block| take(&mut roles, block)) {
+        let is_real_part_last = columns[0] > columns[3];
+        said.orientation =
+            Some(if is_real_part_last { OrientationForm::QuaternionXyzw } else { OrientationForm::QuaternionWxyz });
+        if is_real_part_last {
+            for (idx, column) in [3, 0, 1, 2].into_iter().zip(columns) {
+                roles[column] = Some(Role::Orientation(idx));
+            }
+        }
+    } else {
+        for (family, (_, ids)) in ANGLES.iter().enumerate() {
+            let block = [0, 1, 2].map(|idx| (Word::Angle { family, idx }, Role::Orientation(idx)));
+            if let Some(columns) = take(&mut roles, &block) {
+                said.orientation = Some(OrientationForm::Angles);
+                said.convention =
+                    if ids.contains(&convention.id) { Some(convention) } else { PoseConvention::by_id(ids[0]) };
+                angles = Some(columns);
+                break;
+            }
+        }
+    }
+    if take(&mut roles, &point).is_none() {
+        take(&mut roles, &[point[0], point[2]]);
+    }
+    for (column, (words, _)) in named.iter().enumerate() {
+        if roles[column].is_none()
+            && let Some(Word::Other(role)) = words.iter().find(|word| matches!(word, Word::Other(_)))
+            && !roles.contains(&Some(*role))
+        {
+            roles[column] = Some(*role);
+        }
+    }
+    let unit_of = |columns: &Option<Vec<usize>>| {
+        columns.as_ref().and_then(|columns| columns.iter().find_map(|column| named[*column].1.as_deref()))
+    };
+    said.length_unit = unit_of(&positions).and_then(length_unit);
+    said.angle_unit = unit_of(&angles).and_then(angle_unit);
+    (roles, said)
+}
+
+/// The units of a second row of a header.
+pub(super) fn units(cells: &[&str], roles: &[Option<Role>], said: &mut Said) {
+    for (cell, role) in cells.iter().zip(roles) {
+        let unit = cell.trim().trim_matches(['[', ']', '(', ')']).to_lowercase();
+        match role {
+            Some(Role::Position(_)) => said.length_unit = said.length_unit.or_else(|| length_unit(&unit)),
+            Some(Role::Orientation(_)) => said.angle_unit = said.angle_unit.or_else(|| angle_unit(&unit)),
+            _ => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn check(header: &str, expected: &str, said: &str) {
+        let cells: Vec<&str> = header.split(',').collect();
+        let (roles, found) = roles(&cells, PoseConvention::default_convention());
+        let letters: String = roles
+            .iter()
+            .map(|role| match role {
+                None => "?".to_owned(),
+                Some(Role::Ignore) => "-".to_owned(),
+                Some(Role::Label) => "L".to_owned(),
+                Some(Role::Position(idx)) => format!("t{idx}"),
+                Some(Role::Orientation(idx)) => format!("o{idx}"),
+                Some(Role::Point(idx)) => format!("p{idx}"),
+                Some(Role::Side) => "S".to_owned(),
+                Some(Role::Used) => "U".to_owned(),
+                Some(Role::Step) => "T".to_owned(),
+                Some(Role::Profile) => "F".to_owned(),
+            })
+            .collect();
+        let words = format!(
+            "{} {} {} {}",
+            found.length_unit.map_or("?", LengthUnit::symbol),
+            found.angle_unit.map_or("?", AngleUnit::symbol),
+            match found.orientation {
+                None => "?",
+                Some(OrientationForm::Angles) => "angles",
+                Some(OrientationForm::QuaternionWxyz) => "wxyz",
+                Some(OrientationForm::QuaternionXyzw) => "xyzw",
+            },
+            found.convention.map_or("?", |convention| convention.id)
+        );
+        assert_eq!((letters.as_str(), words.as_str()), (expected, said), "{header}");
+    }
+
+    #[test]
+    fn columns_are_known_in_many_spellings() {
+        check("x,y,z,rx,ry,rz", "t0t1t2o0o1o2", "? ? angles yaskawa-rxryrz");
+        check("No.,X [mm],Y [mm],Z [mm],W [deg],P [deg],R [deg]", "Lt0t1t2o0o1o2", "mm ° angles fanuc-wpr");
+        check("x/m,y/m,z/m,qx,qy,qz,qw", "t0t1t2o0o1o2o3", "m ? xyzw ?");
+        check("x_m,y_m,z_m,qw,qx,qy,qz", "t0t1t2o0o1o2o3", "m ? wxyz ?");
+        check("# timestamp,tx,ty,tz,qx,qy,qz,qw", "?t0t1t2o0o1o2o3", "? ? xyzw ?");
+        check("q0,q1,q2,q3,t1,t2,t3,x_s,y_s,z_s", "o0o1o2o3t0t1t2p0p1p2", "? ? wxyz ?");
+        check("name,x,y,z,q1,q2,q3,q4", "Lt0t1t2o0o1o2o3", "? ? wxyz ?");
+        check("X,Y,Z,A (°),B,C,use,side", "t0t1t2o0o1o2US", "? ° angles kuka-abc");
+        check("pos_x,pos_y,pos_z,roll (rad),pitch (rad),yaw (rad)", "t0t1t2o0o1o2", "? rad angles fanuc-wpr");
+        check("x,y,z,yaw,pitch,roll", "t0t1t2o2o1o0", "? ? angles fanuc-wpr");
+        check("x,y,z,w,p,r,px,py,pz,file", "t0t1t2o0o1o2p0p1p2F", "? ? angles fanuc-wpr");
+        check("px,py,pz,qw,qx,qy,qz", "t0t1t2o0o1o2o3", "? ? wxyz ?");
+        check(
+            "position.x,position.y,position.z,orientation.x,orientation.y,orientation.z,orientation.w",
+            "t0t1t2o0o1o2o3",
+            "? ? xyzw ?",
+        );
+        check(
+            "label,capture,side,enabled,step_mm,x_mm,y_mm,z_mm,W_deg,P_deg,R_deg",
+            "L?SUTt0t1t2o0o1o2",
+            "mm ° angles fanuc-wpr",
+        );
+        check("x,z", "??", "? ? ? ?");
+    }
+}

@@ -1,0 +1,159 @@
+//! Profiles: rows of x and z, one profile a file or one a column.
+
+use crate::geometry::Profile;
+use crate::geometry::notation::LengthUnit;
+use crate::watch::Cancelled;
+
+use super::gather::Gathered;
+use super::read::Progress;
+use super::table::{Layout, is_comment};
+use super::text::{is_missing, number, records, split};
+use super::{ImportOptions, Source};
+
+/// A profile and how its source names it.
+#[derive(Clone, Debug)]
+pub(super) struct NamedProfile {
+    /// Name of the file, or head of the column.
+    pub name: String,
+    /// The points.
+    pub profile: Profile,
+}
+
+/// Columns of a table of profiles.
+const MAX_PROFILE_COLUMNS: usize = 4096;
+/// Rows between two looks at whether anybody still waits.
+const ROWS_BETWEEN_REPORTS: usize = 1024;
+
+/// Where x and z stand in a table of one profile.
+fn x_and_z(layout: &Layout) -> (usize, usize) {
+    let named = |name: &str| {
+        let header = layout.header.as_ref()?;
+        header.iter().position(|cell| {
+            let cell = cell.trim().to_lowercase();
+            cell.strip_prefix(name).is_some_and(|rest| !rest.starts_with(char::is_alphanumeric))
+        })
+    };
+    match (named("x"), named("z")) {
+        (Some(x), Some(z)) => (x, z),
+        _ if layout.num_columns >= 3 => {
+            // A number of the point in front, or y = 0 in the middle.
+            let is_y = layout.sample.iter().all(|row| row.get(1) == Some(&0.0));
+            if is_y { (0, 2) } else { (1, 2) }
+        }
+        _ => (0, 1),
+    }
+}
+
+/// A value of z; `None` where the profiler saw nothing: an empty cell, or the code of an invalid point.
+fn z_of(text: &str, has_decimal_comma: bool) -> Result<Option<f64>, ()> {
+    if is_missing(text) {
+        return Ok(None);
+    }
+    match number(text, has_decimal_comma) {
+        Some(value) if is_invalid_code(text, value) => Ok(None),
+        Some(value) => Ok(Some(value)),
+        None if text.trim_start_matches(['+', '-']).eq_ignore_ascii_case("inf") => Ok(None),
+        None => Err(()),
+    }
+}
+
+/// Profilers write −32768, −999.999 or 99999 where there is no valid point.
+fn is_invalid_code(text: &str, value: f64) -> bool {
+    let digits = || text.bytes().filter(u8::is_ascii_digit);
+    let is_all_nines = digits().count() >= 4 && digits().all(|digit| digit == b'9') && value.abs() >= 999.0;
+    is_all_nines || [-32_768.0, -32_767.0, -2_147_483_648.0].contains(&value)
+}
+
+/// Length unit of profiles: as the options say, else as the header does, else millimetres.
+pub(super) fn length_unit(layout: &Layout, options: &ImportOptions) -> LengthUnit {
+    let is_in_metres = || {
+        let header = layout.header.as_ref()?;
+        let last = header.last()?.to_lowercase();
+        Some(["[m]", "(m)", "/m", "_m"].iter().any(|unit| last.trim_end().ends_with(unit)))
+    };
+    options.profile_length_unit.unwrap_or(if is_in_metres() == Some(true) {
+        LengthUnit::Metres
+    } else {
+        LengthUnit::Millimetres
+    })
+}
+
+/// Reads one profile, or one a column; rows that cannot be read are listed.
+///
+/// # Errors
+/// [`Cancelled`].
+pub(super) fn read(
+    source: &Source,
+    text: &str,
+    layout: &Layout,
+    has_profile_columns: bool,
+    options: &ImportOptions,
+    gathered: &mut Gathered,
+    progress: &mut Progress<'_>,
+) -> Result<Vec<NamedProfile>, Cancelled> {
+    let in_mm = length_unit(layout, options).in_mm();
+    let z_sign = if options.is_z_mirrored { -1.0 } else { 1.0 };
+    let (x_column, z_columns) = if has_profile_columns {
+        (0, (1..layout.num_columns.min(MAX_PROFILE_COLUMNS)).collect())
+    } else {
+        let (x, z) = x_and_z(layout);
+        (x, vec![z])
+    };
+    let num_rows = records(text).count();
+    let mut x_mm: Vec<f64> = Vec::with_capacity(num_rows);
+    let mut z_mm: Vec<Vec<f64>> = z_columns.iter().map(|_| Vec::with_capacity(num_rows)).collect();
+    let mut cells = Vec::new();
+    let mut row = Vec::with_capacity(z_columns.len());
+    for (idx, record) in records(text).skip_while(|record| record.line < layout.first_row_line).enumerate() {
+        if idx % ROWS_BETWEEN_REPORTS == 0 {
+            progress.tick()?;
+        }
+        if is_comment(record.text, layout.separator) {
+            continue;
+        }
+        split(record.text, layout.separator, &mut cells);
+        let mut problem = None;
+        let mut fail = |column: usize| {
+            let place = cells.get(column).map(|cell| (cell.column(record.text), cell.text));
+            problem.get_or_insert(place.unwrap_or((record.text.chars().count() + 1, "")));
+        };
+        let within = |value: f64| (value.abs() * in_mm <= Profile::LIMIT_MM).then_some(value * in_mm);
+        let x = cells.get(x_column).and_then(|cell| number(cell.text, layout.has_decimal_comma)).and_then(within);
+        if x.is_none() {
+            fail(x_column);
+        }
+        row.clear();
+        for column in &z_columns {
+            // A row that ends early has no more valid points.
+            let text = cells.get(*column).map_or("", |cell| cell.text);
+            match z_of(text, layout.has_decimal_comma) {
+                Ok(z) => row.push(z.and_then(within).map_or(f64::NAN, |z| z * z_sign)),
+                Err(()) => fail(*column),
+            }
+        }
+        match (problem, x) {
+            (None, Some(x)) => {
+                x_mm.push(x);
+                z_mm.iter_mut().zip(&row).for_each(|(list, z)| list.push(*z));
+            }
+            (Some((column, found)), _) => {
+                gathered.problem(&source.name, (record.line, column), found, "a coordinate in a row of x and z");
+            }
+            (None, None) => {}
+        }
+    }
+    let names = |place: usize, column: usize| {
+        let head = layout.header.as_ref().and_then(|header| header.get(column)).filter(|head| !head.is_empty());
+        head.cloned().unwrap_or_else(|| (place + 1).to_string())
+    };
+    let mut profiles = Vec::with_capacity(z_columns.len());
+    for (place, (column, z_mm)) in z_columns.iter().zip(z_mm).enumerate() {
+        let z_mm: Vec<Option<f64>> = z_mm.iter().map(|z| (!z.is_nan()).then_some(*z)).collect();
+        let name = if has_profile_columns { names(place, *column) } else { source.name.clone() };
+        // The lists are as long as each other and checked above.
+        if let Ok(profile) = Profile::new(x_mm.clone(), &z_mm) {
+            profiles.push(NamedProfile { name, profile });
+        }
+    }
+    Ok(profiles)
+}

@@ -1,0 +1,262 @@
+//! All sources together: recognised, read one after the other, and put together.
+
+use std::sync::Arc;
+
+use crate::geometry::PoseNotation;
+use crate::session::{Edit, Reading, parse};
+use crate::watch::{Cancelled, Watch};
+
+use super::gather::Gathered;
+use super::profiles::{self, NamedProfile};
+use super::recognise::{Recognised, recognise};
+use super::text::{excerpt, without_mark};
+use super::{
+    ImportError, ImportOptions, Imported, Kind, Note, Part, Preview, Source, abb, fanuc, kuka, matching, printed,
+    table, ur,
+};
+
+/// How far the import is, for those who wait for it.
+pub(super) struct Progress<'w> {
+    watch: &'w mut dyn Watch,
+    done: usize,
+    total: usize,
+}
+
+impl Progress<'_> {
+    /// Asks whether to go on; called every few hundred rows.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn tick(&mut self) -> Result<(), Cancelled> {
+        self.watch.report(self.done, self.total)
+    }
+}
+
+/// Reads sources; see [`super::read`].
+pub(super) fn read(
+    sources: &[Source],
+    options: &ImportOptions,
+    notation: &PoseNotation,
+    watch: &mut dyn Watch,
+) -> Result<Imported, ImportError> {
+    let mut progress = Progress { watch, done: 0, total: sources.len() };
+    progress.tick()?;
+    let mut reading = Import::new(options, notation);
+    // What the options say is meant for the first source with poses; others speak for themselves.
+    let others = ImportOptions {
+        notation: options.notation,
+        base_from_user_frame: options.base_from_user_frame,
+        profile_length_unit: options.profile_length_unit,
+        is_z_mirrored: options.is_z_mirrored,
+        ..ImportOptions::default()
+    };
+    let main_idx = main_source(sources, notation);
+    for (idx, source) in sources.iter().enumerate() {
+        progress.done = idx;
+        progress.tick()?;
+        let is_main = idx == main_idx;
+        let options = if is_main { options } else { &others };
+        let text = without_mark(&source.text);
+        match recognise(&source.name, text, options.kind, options, notation) {
+            Some(recognised) => reading.take(source, text, recognised, options, is_main, &mut progress)?,
+            None => reading.not_recognised.push(source.name.clone()),
+        }
+    }
+    reading.finish(sources)
+}
+
+/// The first source with poses, else the first of all.
+fn main_source(sources: &[Source], notation: &PoseNotation) -> usize {
+    if sources.len() < 2 {
+        return 0;
+    }
+    let options = ImportOptions::default();
+    let has_poses = |source: &Source| {
+        let text = without_mark(&source.text);
+        recognise(&source.name, text, None, &options, notation).is_some_and(|recognised| recognised.has_poses())
+    };
+    sources.iter().position(has_poses).unwrap_or_default()
+}
+
+struct Import<'o> {
+    fallback: &'o PoseNotation,
+    imported: Imported,
+    gathered: Gathered,
+    profiles: Vec<NamedProfile>,
+    has_profile_columns: bool,
+    not_recognised: Vec<String>,
+}
+
+impl<'o> Import<'o> {
+    fn new(options: &ImportOptions, fallback: &'o PoseNotation) -> Self {
+        Self {
+            fallback,
+            imported: Imported {
+                options: options.clone(),
+                parts: Vec::new(),
+                preview: Preview::default(),
+                stations: Vec::new(),
+                problems: Vec::new(),
+                num_problems: 0,
+                notes: Vec::new(),
+                published: None,
+                session: None,
+            },
+            gathered: Gathered::new(options.notation.unwrap_or(*fallback), options.base_from_user_frame),
+            profiles: Vec::new(),
+            has_profile_columns: false,
+            not_recognised: Vec::new(),
+        }
+    }
+
+    fn take(
+        &mut self,
+        source: &Source,
+        text: &str,
+        recognised: Recognised,
+        options: &ImportOptions,
+        is_main: bool,
+        progress: &mut Progress<'_>,
+    ) -> Result<(), ImportError> {
+        let kind = recognised.kind();
+        let (poses_before, profiles_before) = (self.gathered.num_poses(), self.profiles.len());
+        let mut preview = Preview::default();
+        let mut filled = ImportOptions { kind: Some(kind), ..options.clone() };
+        match recognised {
+            Recognised::Session => self.take_session(source, text)?,
+            Recognised::Printed(tables) => {
+                let notation = options.notation.unwrap_or_else(|| printed::notation(self.fallback));
+                self.gathered.set_notation(notation, options.base_from_user_frame);
+                self.imported.published = printed::read(source, &tables, &mut self.gathered, &mut preview);
+                filled.notation = Some(notation);
+            }
+            Recognised::Program(kind) => {
+                let mut frame = options.base_from_user_frame;
+                let recognised = match kind {
+                    Kind::AbbModule => {
+                        let frames = abb::frames(text);
+                        frame = frame.or(frames.base_from_user_frame);
+                        abb::notation(&frames, self.fallback)
+                    }
+                    Kind::KukaProgram => kuka::notation(self.fallback),
+                    Kind::UrScript => ur::notation(text, self.fallback),
+                    _ => fanuc::notation(self.fallback),
+                };
+                let notation = options.notation.unwrap_or(recognised);
+                self.gathered.set_notation(notation, frame);
+                let read = match kind {
+                    Kind::AbbModule => abb::read,
+                    Kind::KukaProgram => kuka::read,
+                    Kind::UrScript => ur::read,
+                    _ => fanuc::read,
+                };
+                read(source, text, &mut self.gathered, &mut preview, progress)?;
+                filled.notation = Some(notation);
+                filled.base_from_user_frame = frame;
+            }
+            Recognised::Table(Kind::PoseTable, layout, columns) => {
+                let notation = options.notation.unwrap_or_else(|| table::notation(&layout, &columns, self.fallback));
+                self.gathered.set_notation(notation, options.base_from_user_frame);
+                table::read(source, text, &layout, &columns, &mut self.gathered, &mut preview, progress)?;
+                filled = ImportOptions {
+                    separator: Some(layout.separator),
+                    decimal_comma: Some(layout.has_decimal_comma),
+                    has_header: Some(columns.has_header),
+                    roles: Some(columns.roles),
+                    notation: Some(notation),
+                    ..filled
+                };
+            }
+            Recognised::Table(_, layout, _) => {
+                let has_columns = kind == Kind::ProfileColumns;
+                let read = profiles::read(source, text, &layout, has_columns, options, &mut self.gathered, progress)?;
+                self.profiles.extend(read);
+                self.has_profile_columns |= has_columns;
+                filled.separator = Some(layout.separator);
+                filled.decimal_comma = Some(layout.has_decimal_comma);
+                filled.profile_length_unit = Some(profiles::length_unit(&layout, options));
+                preview.header.clone_from(layout.header.as_ref().unwrap_or(&Vec::new()));
+            }
+        }
+        if is_main {
+            self.imported.options = filled;
+            self.imported.preview = preview;
+        }
+        self.imported.parts.push(Part {
+            name: source.name.clone(),
+            kind,
+            num_poses: self.gathered.num_poses() - poses_before,
+            num_readings: self.profiles.len() - profiles_before,
+        });
+        Ok(())
+    }
+
+    /// A session of ours: the first is the one, the stations of others are added to it.
+    fn take_session(&mut self, source: &Source, text: &str) -> Result<(), ImportError> {
+        let session = parse(text.as_bytes(), &source.name)?;
+        self.imported.session = Some(Box::new(match self.imported.session.take() {
+            None => session,
+            Some(first) => {
+                let edit = Edit::InsertStations { at: usize::MAX, stations: session.stations };
+                edit.apply(&first).unwrap_or(*first)
+            }
+        }));
+        Ok(())
+    }
+
+    fn finish(self, sources: &[Source]) -> Result<Imported, ImportError> {
+        let Self { mut imported, mut gathered, profiles, has_profile_columns, not_recognised, .. } = self;
+        let first_name = || sources.first().map(|source| source.name.clone()).unwrap_or_default();
+        if imported.parts.is_empty() {
+            let text = sources.first().map_or("", |source| without_mark(&source.text).trim());
+            let line = excerpt(text.lines().next().unwrap_or_default());
+            let found = if line.is_empty() { "nothing".to_owned() } else { format!("\"{line}\"") };
+            return Err(ImportError::NotRecognised { file: first_name(), found });
+        }
+        gathered.finish();
+        if !profiles.is_empty() {
+            let names = matching::assign(&mut gathered.stations, &gathered.profile_keys, profiles, has_profile_columns);
+            if !names.is_empty() {
+                gathered.notes.push(Note::ProfilesWithoutPose { names });
+            }
+        }
+        let without_reading = gathered.num_without_reading();
+        if without_reading > 0 {
+            gathered.notes.push(Note::PosesWithoutReading { num_poses: without_reading });
+        }
+        if !not_recognised.is_empty() {
+            gathered.notes.push(Note::SourcesLeftOut { names: not_recognised });
+        }
+        imported.stations = gathered.stations;
+        imported.problems = gathered.problems;
+        imported.num_problems = gathered.num_problems;
+        imported.notes = gathered.notes;
+        if let Some(session) = &imported.session {
+            imported.stations.splice(0..0, session.stations.iter().cloned());
+        }
+        let has_profiles = imported.parts.iter().any(|part| part.num_readings > 0);
+        let has_preview = imported.preview.num_rows > 0;
+        if imported.stations.is_empty() && !has_profiles && imported.session.is_none() {
+            match imported.problems.first() {
+                Some(problem) if !has_preview => return Err(ImportError::NothingLeft(problem.clone())),
+                Some(_) => {}
+                None => {
+                    return Err(ImportError::NotRecognised { file: first_name(), found: "no pose".to_owned() });
+                }
+            }
+        }
+        Ok(imported)
+    }
+}
+
+impl Gathered {
+    /// Captures that have neither a profile nor a point.
+    fn num_without_reading(&self) -> usize {
+        let captures = self.stations.iter().flat_map(|station| &station.captures);
+        let is_without = |reading: &Reading| match reading {
+            Reading::Profile(profile) => Arc::ptr_eq(profile, &self.no_profile),
+            Reading::Point(_) => false,
+        };
+        captures.filter(|capture| is_without(&capture.reading)).count()
+    }
+}

@@ -1,0 +1,108 @@
+//! What a source is: by its content first, by the ending of its name where that leaves it open.
+
+use crate::geometry::PoseNotation;
+
+use super::table::{self, Columns, Layout};
+use super::{ImportOptions, Kind, Role, abb, fanuc, kuka, printed, ur};
+
+/// What was found on the way and is needed for reading.
+pub(super) enum Recognised {
+    /// A session file of ours.
+    Session,
+    /// Poses or profiles in rows and columns.
+    Table(Kind, Box<Layout>, Columns),
+    /// Named values.
+    Printed(Box<printed::Tables>),
+    /// A robot's program.
+    Program(Kind),
+}
+
+impl Recognised {
+    pub const fn kind(&self) -> Kind {
+        match self {
+            Self::Session => Kind::Session,
+            Self::Table(kind, ..) | Self::Program(kind) => *kind,
+            Self::Printed(_) => Kind::PrintedTable,
+        }
+    }
+
+    /// Whether it gives poses.
+    pub const fn has_poses(&self) -> bool {
+        !matches!(self.kind(), Kind::Profile | Kind::ProfileColumns)
+    }
+}
+
+/// What a text is taken for; `kind` is what the user says.
+pub(super) fn recognise(
+    name: &str,
+    text: &str,
+    kind: Option<Kind>,
+    options: &ImportOptions,
+    notation: &PoseNotation,
+) -> Option<Recognised> {
+    let _ = name;
+    match kind {
+        Some(Kind::Session) => return Some(Recognised::Session),
+        Some(Kind::PrintedTable) => return printed::find(text).map(|tables| Recognised::Printed(Box::new(tables))),
+        Some(kind @ (Kind::PoseTable | Kind::Profile | Kind::ProfileColumns)) => {
+            let layout = table::layout(text, options)?;
+            let columns = table::columns(&layout, options, notation);
+            return Some(Recognised::Table(kind, Box::new(layout), columns));
+        }
+        Some(kind @ (Kind::FanucProgram | Kind::AbbModule | Kind::KukaProgram | Kind::UrScript)) => {
+            return Some(Recognised::Program(kind));
+        }
+        _ => {}
+    }
+    if text.trim_start().starts_with('{') && text.contains("\"handeye-session\"") {
+        return Some(Recognised::Session);
+    }
+    if let Some(tables) = printed::find(text) {
+        return Some(Recognised::Printed(Box::new(tables)));
+    }
+    let programs: [(Kind, fn(&str) -> bool); 4] = [
+        (Kind::FanucProgram, fanuc::is_program),
+        (Kind::AbbModule, abb::is_program),
+        (Kind::KukaProgram, kuka::is_program),
+        (Kind::UrScript, ur::is_script),
+    ];
+    if let Some((kind, _)) = programs.iter().find(|(_, is_one)| is_one(text)) {
+        return Some(Recognised::Program(*kind));
+    }
+    let layout = table::layout(text, options)?;
+    let columns = table::columns(&layout, options, notation);
+    let kind = table_kind(&layout, &columns);
+    Some(Recognised::Table(kind, Box::new(layout), columns))
+}
+
+/// Whether rows and columns are poses or profiles.
+fn table_kind(layout: &Layout, columns: &Columns) -> Kind {
+    let is_pose = (0..3)
+        .all(|idx| columns.roles.contains(&Role::Position(idx)) && columns.roles.contains(&Role::Orientation(idx)));
+    let names_a_pose = columns.said.orientation.is_some() && columns.has_header;
+    if is_pose && (names_a_pose || !is_along_a_line(layout)) {
+        return Kind::PoseTable;
+    }
+    match layout.num_columns {
+        ..=2 => Kind::Profile,
+        3 if !is_along_a_line(layout) || is_numbered_or_flat(layout) => Kind::Profile,
+        3 => Kind::ProfileColumns,
+        _ if is_along_a_line(layout) => Kind::ProfileColumns,
+        _ => Kind::PoseTable,
+    }
+}
+
+/// Whether the first column is a profile's x: many values with steady steps, and not the numbers of rows.
+fn is_along_a_line(layout: &Layout) -> bool {
+    const MIN_ROWS: usize = 10;
+    let x: Vec<f64> = layout.sample.iter().filter_map(|row| row.first().copied()).collect();
+    let steps: Vec<f64> = x.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let Some(first) = steps.first() else { return false };
+    let is_numbering = steps.iter().all(|step| (*step - 1.0).abs() < f64::EPSILON) && x[0].fract() == 0.0;
+    x.len() >= MIN_ROWS && !is_numbering && steps.iter().all(|step| (step / first - 1.0).abs() < 0.5)
+}
+
+/// Three columns of one profile: a number in front, or y = 0 in the middle.
+fn is_numbered_or_flat(layout: &Layout) -> bool {
+    layout.sample.iter().all(|row| row.get(1) == Some(&0.0))
+}

@@ -1,0 +1,490 @@
+//! Tables of numbers: what separates their cells, where the header ends, and what the columns mean.
+
+use crate::calibrate::{Side, SideChoice};
+use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm, QUATERNION_NORM_TOLERANCE};
+use crate::geometry::{PoseNotation, Vec3};
+use crate::watch::Cancelled;
+
+use super::gather::{Gathered, RawPose};
+use super::header::{self, Said};
+use super::read::Progress;
+use super::text::{Cell, Record, excerpt, is_missing, number, records, split};
+use super::{ImportOptions, Preview, Role, Separator, Source};
+
+/// Rows that recognition looks at.
+const MAX_SAMPLE_ROWS: usize = 100;
+/// Records that recognition looks at in search of rows of numbers.
+const MAX_SAMPLE_RECORDS: usize = 1000;
+/// Rows of the preview.
+const MAX_PREVIEW_ROWS: usize = 50;
+/// Columns of the preview, and of a table of poses.
+pub(super) const MAX_COLUMNS: usize = 64;
+/// Rows between two looks at whether anybody still waits.
+const ROWS_BETWEEN_REPORTS: usize = 256;
+
+/// How a table stands in its text.
+#[derive(Clone, Debug)]
+pub(super) struct Layout {
+    pub separator: Separator,
+    pub has_decimal_comma: bool,
+    /// Line of the first row of numbers, from 1.
+    pub first_row_line: usize,
+    /// Cells of the row above the numbers that names the columns.
+    pub header: Option<Vec<String>>,
+    /// Cells of a second row of the header, with units.
+    units: Option<Vec<String>>,
+    /// The first rows, NaN where there is no number.
+    pub sample: Vec<Vec<f64>>,
+    pub num_columns: usize,
+}
+
+/// What the columns of a table of poses mean.
+#[derive(Clone, Debug)]
+pub(super) struct Columns {
+    pub roles: Vec<Role>,
+    pub said: Said,
+    pub has_header: bool,
+}
+
+/// A line that says nothing to a program.
+pub(super) fn is_comment(record: &str, separator: Separator) -> bool {
+    let text = record.trim_start();
+    text.starts_with(['#', '%'])
+        || text.starts_with("//")
+        || (text.starts_with(';') && separator != Separator::Semicolon)
+}
+
+/// Whether a row is one of values: at least two numbers, and half of its cells.
+fn is_row_of_numbers(cells: &[Cell<'_>], has_decimal_comma: bool) -> bool {
+    let num_filled = cells.iter().filter(|cell| !is_missing(cell.text)).count();
+    let num_numbers = cells.iter().filter(|cell| number(cell.text, has_decimal_comma).is_some()).count();
+    num_numbers >= 2 && 2 * num_numbers >= num_filled
+}
+
+/// What separates the cells, and whether the numbers have a decimal comma.
+fn separation(text: &str, options: &ImportOptions) -> Option<(Separator, bool)> {
+    /// In doubt the earlier: blanks are within cells more often than tabulators.
+    const ORDER: [Separator; 4] = [Separator::Tab, Separator::Semicolon, Separator::Comma, Separator::Blanks];
+    /// A later separator must explain the cells better by so much.
+    const CLEARLY_BETTER: f64 = 0.15;
+    let mut found: Vec<(Separator, bool, f64, usize)> = Vec::new();
+    for separator in ORDER {
+        if options.separator.is_some_and(|wanted| wanted != separator) {
+            continue;
+        }
+        let mut cells = Vec::new();
+        let (mut num_rows, mut num_cells, mut num_numbers, mut num_commas) = (0, 0, 0, 0);
+        for record in records(text).take(MAX_SAMPLE_RECORDS) {
+            if is_comment(record.text, separator) {
+                continue;
+            }
+            split(record.text, separator, &mut cells);
+            let filled = cells.iter().filter(|cell| !is_missing(cell.text));
+            let numbers = filled.clone().filter(|cell| number(cell.text, true).is_some()).count();
+            if numbers >= 2 {
+                num_rows += 1;
+                num_numbers += numbers;
+                num_cells += filled.clone().count();
+                num_commas += filled.filter(|cell| cell.text.contains(',') && !cell.text.contains('.')).count();
+            }
+            if num_rows >= MAX_SAMPLE_ROWS {
+                break;
+            }
+        }
+        if num_rows > 0 {
+            #[expect(clippy::cast_precision_loss, reason = "at most a few thousand cells")]
+            let quality = num_numbers as f64 / num_cells as f64;
+            found.push((separator, options.decimal_comma.unwrap_or(num_commas > 0), quality, num_rows));
+        }
+    }
+    let best = found.iter().map(|(_, _, quality, _)| *quality).fold(0.0, f64::max);
+    let most_rows = found.iter().map(|(_, _, _, num_rows)| *num_rows).max()?;
+    found
+        .iter()
+        .find(|(_, _, quality, num_rows)| *quality >= best - CLEARLY_BETTER && 2 * num_rows >= most_rows)
+        .map(|(separator, has_decimal_comma, _, _)| (*separator, *has_decimal_comma))
+}
+
+/// The layout of a table; `None` if there are no rows of numbers.
+pub(super) fn layout(text: &str, options: &ImportOptions) -> Option<Layout> {
+    let (separator, has_decimal_comma) = separation(text, options)?;
+    let mut layout = Layout {
+        separator,
+        has_decimal_comma,
+        first_row_line: 0,
+        header: None,
+        units: None,
+        sample: Vec::new(),
+        num_columns: 0,
+    };
+    let mut cells = Vec::new();
+    // The two records before the first row of numbers, comments among them: "# x y z" is a header too.
+    let mut before: [Option<Record<'_>>; 2] = [None, None];
+    for record in records(text).take(MAX_SAMPLE_RECORDS) {
+        split(record.text, separator, &mut cells);
+        let is_comment = is_comment(record.text, separator);
+        if !is_comment && is_row_of_numbers(&cells, has_decimal_comma) {
+            if layout.sample.is_empty() {
+                layout.first_row_line = record.line;
+            }
+            let row = cells.iter().take(MAX_COLUMNS);
+            layout.sample.push(row.map(|cell| number(cell.text, has_decimal_comma).unwrap_or(f64::NAN)).collect());
+            if layout.sample.len() >= MAX_SAMPLE_ROWS {
+                break;
+            }
+        } else if layout.sample.is_empty() && !is_rule(record.text) {
+            before = [before[1], Some(record)];
+        }
+    }
+    if layout.sample.is_empty() {
+        return None;
+    }
+    layout.num_columns = usual_num_columns(&layout.sample);
+    let names = |record: Record<'_>| {
+        let mut cells = Vec::new();
+        let text = record.text.trim_start_matches(['#', '%', '/', ' ']);
+        split(text, separator, &mut cells);
+        cells.iter().take(MAX_COLUMNS).map(|cell| excerpt(cell.text).into_owned()).collect::<Vec<String>>()
+    };
+    if options.has_header != Some(false) {
+        let nearest = before[1].map(names);
+        let above = before[0].map(names);
+        let is_units = |cells: &Vec<String>| cells.len() > 1 && cells.iter().all(|cell| header::is_unit(cell));
+        (layout.header, layout.units) = match nearest {
+            Some(nearest) if is_units(&nearest) => (above, Some(nearest)),
+            other => (other, None),
+        };
+    }
+    Some(layout)
+}
+
+/// The line below the header of a Markdown table, and other lines that are drawn.
+fn is_rule(record: &str) -> bool {
+    record.chars().all(|c| matches!(c, '|' | '-' | ':' | '+' | '=' | ' ' | '\t' | '_' | '*'))
+}
+
+fn usual_num_columns(sample: &[Vec<f64>]) -> usize {
+    let count = |len: usize| sample.iter().filter(|row| row.len() == len).count();
+    // Ties go to the longer row: cells are forgotten rather than added.
+    sample.iter().map(Vec::len).max_by_key(|len| (count(*len), *len)).unwrap_or_default()
+}
+
+/// What the columns mean: as the options say, as the header names them, or by number and values.
+pub(super) fn columns(layout: &Layout, options: &ImportOptions, notation: &PoseNotation) -> Columns {
+    let mut said = Said::default();
+    let mut named: Vec<Option<Role>> = vec![None; layout.num_columns];
+    let mut has_header = false;
+    if let Some(header) = &layout.header {
+        let cells: Vec<&str> = header.iter().map(String::as_str).collect();
+        let (found, found_said) = header::roles(&cells, notation.convention);
+        has_header = options.has_header == Some(true) || found.iter().any(Option::is_some);
+        if has_header {
+            named = found;
+            said = found_said;
+            named.resize(layout.num_columns.max(named.len()), None);
+            if let Some(units) = &layout.units {
+                let cells: Vec<&str> = units.iter().map(String::as_str).collect();
+                header::units(&cells, &named, &mut said);
+            }
+        }
+    }
+    let roles = match &options.roles {
+        Some(roles) => {
+            let mut roles = roles.clone();
+            roles.resize(named.len().max(roles.len()), Role::Ignore);
+            roles
+        }
+        None => {
+            if !is_complete(&named) {
+                fill_by_values(&mut named, layout, &mut said);
+            }
+            named.iter().map(|role| role.unwrap_or(Role::Ignore)).collect()
+        }
+    };
+    if said.orientation.is_none() && roles.contains(&Role::Orientation(3)) {
+        said.orientation = Some(OrientationForm::QuaternionWxyz);
+    }
+    Columns { roles, said, has_header }
+}
+
+fn is_complete(roles: &[Option<Role>]) -> bool {
+    (0..3).all(|idx| roles.contains(&Some(Role::Position(idx))) && roles.contains(&Some(Role::Orientation(idx))))
+}
+
+/// Whether four columns are a unit quaternion in every row.
+fn is_quaternion(sample: &[Vec<f64>], columns: &[usize]) -> bool {
+    let norm = |row: &Vec<f64>| {
+        columns.iter().map(|column| row.get(*column).map_or(f64::NAN, |part| part * part)).sum::<f64>().sqrt()
+    };
+    columns.len() == 4 && sample.iter().all(|row| (norm(row) - 1.0).abs() <= 2.0 * QUATERNION_NORM_TOLERANCE)
+}
+
+/// Whether a column counts the rows, or the stations.
+fn is_numbering(sample: &[Vec<f64>], column: usize) -> bool {
+    let values: Vec<f64> = sample.iter().map(|row| row.get(column).copied().unwrap_or(f64::NAN)).collect();
+    values.iter().all(|value| value.fract() == 0.0 && *value >= 0.0)
+        && values.windows(2).all(|pair| (0.0..=1.0).contains(&(pair[1] - pair[0])))
+}
+
+/// Gives the columns without a name their meaning by how many they are and what stands in them.
+fn fill_by_values(roles: &mut [Option<Role>], layout: &Layout, said: &mut Said) {
+    let sample = &layout.sample;
+    if roles.iter().any(|role| matches!(role, Some(Role::Position(_) | Role::Orientation(_)))) {
+        // A header that names half of a pose is not to be guessed over.
+        return;
+    }
+    let mut free: Vec<usize> = (0..layout.num_columns).filter(|column| roles[*column].is_none()).collect();
+    let has_label = roles.contains(&Some(Role::Label));
+    let is_number = |column: usize| {
+        sample.iter().filter(|row| row.get(column).is_some_and(|v| !v.is_nan())).count() * 2 > sample.len()
+    };
+    let first_is_label = |free: &[usize]| {
+        !has_label && free.first().is_some_and(|first| !is_number(*first) || is_numbering(sample, *first))
+    };
+    let quaternion_at =
+        |free: &[usize], at: usize| free.get(at..at + 4).is_some_and(|four| is_quaternion(sample, four));
+    // A row of a pose and its point: 6 or 7 numbers, and 0, 2 or 3 more; with a name or a time in front of it one more.
+    let lead = match free.len() {
+        6 => 0,
+        7 => usize::from(!quaternion_at(&free, 3)),
+        8 => usize::from(quaternion_at(&free, 4) || first_is_label(&free)),
+        9 => usize::from(!quaternion_at(&free, 3) && first_is_label(&free) && quaternion_at(&free, 4)),
+        10 => usize::from(!quaternion_at(&free, 3)),
+        11 => 1,
+        _ => return,
+    };
+    if lead == 1 {
+        let first = free.remove(0);
+        let is_label = !has_label && (!is_number(first) || is_numbering(sample, first));
+        roles[first] = Some(if is_label { Role::Label } else { Role::Ignore });
+    }
+    free.retain(|column| is_number(*column));
+    let num_orientation = if quaternion_at(&free, 3) { 4 } else { 3 };
+    said.orientation =
+        Some(if num_orientation == 4 { OrientationForm::QuaternionWxyz } else { OrientationForm::Angles });
+    for (place, column) in free.iter().enumerate() {
+        let rest = free.len().saturating_sub(3 + num_orientation);
+        roles[*column] = match place {
+            0..3 => Some(Role::Position(place)),
+            _ if place < 3 + num_orientation => Some(Role::Orientation(place - 3)),
+            _ => match (rest, place - 3 - num_orientation) {
+                (3, idx) => Some(Role::Point(idx)),
+                // A point of the laser plane.
+                (2, 0) => Some(Role::Point(0)),
+                (2, 1) => Some(Role::Point(2)),
+                _ => None,
+            },
+        };
+    }
+}
+
+/// How the poses of a table are written: as its header says, else by the size of its numbers, else as `notation` has it.
+pub(super) fn notation(layout: &Layout, columns: &Columns, notation: &PoseNotation) -> PoseNotation {
+    /// Robots stand further than this from their base in millimetres, and not as far in metres.
+    const LARGEST_METRES: f64 = 5.0;
+    let largest = |is_wanted: fn(Role) -> bool| {
+        let values = layout.sample.iter().flat_map(|row| row.iter().zip(&columns.roles));
+        values
+            .filter(|(value, role)| is_wanted(**role) && !value.is_nan())
+            .map(|(value, _)| value.abs())
+            .fold(0.0, f64::max)
+    };
+    let largest_position = largest(|role| matches!(role, Role::Position(_)));
+    let largest_angle = largest(|role| matches!(role, Role::Orientation(_)));
+    let said = &columns.said;
+    let length_unit = said.length_unit.unwrap_or(if largest_position > 0.0 && largest_position <= LARGEST_METRES {
+        LengthUnit::Metres
+    } else {
+        LengthUnit::Millimetres
+    });
+    let orientation = said.orientation.unwrap_or_default();
+    let is_rad = largest_angle > 0.0 && largest_angle <= std::f64::consts::TAU + 1e-3;
+    let angle_unit = match orientation {
+        OrientationForm::Angles => {
+            said.angle_unit.unwrap_or(if is_rad { AngleUnit::Radians } else { AngleUnit::Degrees })
+        }
+        OrientationForm::QuaternionWxyz | OrientationForm::QuaternionXyzw => notation.angle_unit,
+    };
+    PoseNotation {
+        convention: said.convention.unwrap_or(notation.convention),
+        orientation,
+        angle_unit,
+        length_unit,
+        flange_from_tcp: notation.flange_from_tcp,
+        is_inverse: notation.is_inverse,
+    }
+}
+
+/// The columns of each role, found once for all rows.
+struct Places {
+    numbers: Vec<usize>,
+    point: [Option<usize>; 3],
+    label: Option<usize>,
+    side: Option<usize>,
+    used: Option<usize>,
+    step: Option<usize>,
+    profile: Option<usize>,
+}
+
+impl Places {
+    /// # Errors
+    /// The role that no column has.
+    fn of(roles: &[Role], notation: &PoseNotation) -> Result<Self, Role> {
+        let at = |wanted: Role| roles.iter().position(|role| *role == wanted);
+        let num_orientation = notation.num_numbers() - 3;
+        // The roles of a quaternion are its parts in the order in which they are written.
+        let needed = (0..3).map(Role::Position).chain((0..num_orientation).map(Role::Orientation));
+        Ok(Self {
+            numbers: needed.map(|role| at(role).ok_or(role)).collect::<Result<_, _>>()?,
+            point: [0, 1, 2].map(|idx| at(Role::Point(idx))),
+            label: at(Role::Label),
+            side: at(Role::Side),
+            used: at(Role::Used),
+            step: at(Role::Step),
+            profile: at(Role::Profile),
+        })
+    }
+}
+
+/// A cell that is not what its column needs: its index, and what is expected.
+type CellProblem = (usize, &'static str);
+
+const A_NUMBER: &str = "a number";
+
+/// Reads the rows of a table of poses.
+///
+/// # Errors
+/// [`Cancelled`].
+pub(super) fn read(
+    source: &Source,
+    text: &str,
+    layout: &Layout,
+    columns: &Columns,
+    gathered: &mut Gathered,
+    preview: &mut Preview,
+    progress: &mut Progress<'_>,
+) -> Result<(), Cancelled> {
+    let notation = *gathered.notation();
+    let places = Places::of(&columns.roles, &notation);
+    if let Err(role) = &places {
+        let found = format!("{} columns, none of them with {}", layout.num_columns, wanted(*role, &notation));
+        gathered.problem(&source.name, (layout.first_row_line, 1), &found, "a column for each number of a pose");
+    }
+    preview.roles.clone_from(&columns.roles);
+    preview.header = match &layout.header {
+        Some(header) if columns.has_header => header.clone(),
+        _ => (1..=columns.roles.len()).map(|column| column.to_string()).collect(),
+    };
+    let mut cells = Vec::new();
+    let mut numbers = Vec::with_capacity(notation.num_numbers());
+    for (idx, record) in records(text).skip_while(|record| record.line < layout.first_row_line).enumerate() {
+        if idx % ROWS_BETWEEN_REPORTS == 0 {
+            progress.tick()?;
+        }
+        if is_comment(record.text, layout.separator) || is_rule(record.text) {
+            continue;
+        }
+        split(record.text, layout.separator, &mut cells);
+        preview.num_rows += 1;
+        if preview.rows.len() < MAX_PREVIEW_ROWS {
+            let shown = cells.iter().take(MAX_COLUMNS).map(|cell| excerpt(cell.text).into_owned()).collect();
+            preview.rows.push((record.line, shown));
+        }
+        let Ok(places) = &places else { continue };
+        if gathered.is_full() {
+            gathered.take(&source.name, &RawPose { at: (record.line, 1), ..RawPose::default() });
+            break;
+        }
+        match row(&cells, places, layout.has_decimal_comma, &mut numbers) {
+            Ok(mut raw) => {
+                raw.at = (record.line, cells.get(places.numbers[0]).map_or(1, |cell| cell.column(record.text)));
+                raw.numbers = &numbers;
+                gathered.take(&source.name, &raw);
+            }
+            Err((cell_idx, expected)) => {
+                let end = record.text.chars().count() + 1;
+                let (column, found) =
+                    cells.get(cell_idx).map_or((end, ""), |cell| (cell.column(record.text), cell.text));
+                gathered.problem(&source.name, (record.line, column), found, expected);
+            }
+        }
+    }
+    Ok(())
+}
+
+fn wanted(role: Role, notation: &PoseNotation) -> String {
+    match role {
+        Role::Position(idx) => ["x", "y", "z"].get(idx).copied().unwrap_or_default().to_owned(),
+        Role::Orientation(idx) => notation.orientation_names().get(idx).copied().unwrap_or_default().to_owned(),
+        _ => String::new(),
+    }
+}
+
+fn row<'t>(
+    cells: &[Cell<'t>],
+    places: &Places,
+    has_decimal_comma: bool,
+    numbers: &mut Vec<f64>,
+) -> Result<RawPose<'t>, CellProblem> {
+    let text = |column: Option<usize>| {
+        column.and_then(|column| cells.get(column)).map(|cell| cell.text).filter(|text| !text.is_empty())
+    };
+    let number_at = |column: usize| {
+        let value = cells.get(column).and_then(|cell| number(cell.text, has_decimal_comma));
+        value.ok_or((column, A_NUMBER))
+    };
+    numbers.clear();
+    for column in &places.numbers {
+        numbers.push(number_at(*column)?);
+    }
+    let side = match text(places.side) {
+        None => SideChoice::Auto,
+        Some(side) => match side.to_lowercase().as_str() {
+            "+" | "plus" | "1" | "+1" => SideChoice::Given(Side::Plus),
+            "-" | "−" | "minus" | "-1" => SideChoice::Given(Side::Minus),
+            "auto" | "?" | "0" => SideChoice::Auto,
+            _ => return Err((places.side.unwrap_or_default(), "a side: auto, + or -")),
+        },
+    };
+    let is_disabled = match text(places.used) {
+        None => false,
+        Some(used) => match used.to_lowercase().as_str() {
+            "1" | "true" | "yes" | "y" | "x" | "on" | "used" => false,
+            "0" | "false" | "no" | "n" | "off" | "-" => true,
+            _ => return Err((places.used.unwrap_or_default(), "yes or no")),
+        },
+    };
+    let step_mm = match text(places.step) {
+        Some(step) if !is_missing(step) => Some(number_at(places.step.unwrap_or_default())?),
+        _ => None,
+    };
+    Ok(RawPose {
+        label: text(places.label),
+        point_in_sensor: point(cells, places, number_at)?,
+        side,
+        is_disabled,
+        step_mm,
+        profile: text(places.profile),
+        may_continue: true,
+        ..RawPose::default()
+    })
+}
+
+/// The reduced point; none where all its cells are empty. A point of the laser plane has no column for y.
+fn point(
+    cells: &[Cell<'_>],
+    places: &Places,
+    number_at: impl Fn(usize) -> Result<f64, CellProblem>,
+) -> Result<Option<Vec3>, CellProblem> {
+    let is_filled = |column: usize| cells.get(column).is_some_and(|cell| !is_missing(cell.text));
+    if !places.point.iter().flatten().any(|column| is_filled(*column)) {
+        return Ok(None);
+    }
+    let mut point = Vec3::zeros();
+    for (idx, column) in places.point.iter().enumerate() {
+        if let Some(column) = column {
+            point[idx] = number_at(*column)?;
+        }
+    }
+    Ok(Some(point))
+}
