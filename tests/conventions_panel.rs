@@ -134,6 +134,46 @@ fn units_and_frame_are_put_together_in_a_form() {
 }
 
 #[test]
+fn a_tool_point_is_typed_in_the_units_and_angles_chosen() {
+    let mut harness = Bench::harness(sample());
+    click(&mut harness, words::MORE);
+    choose(&mut harness, words::LENGTH_UNIT, words::length_unit(LengthUnit::Metres));
+    choose(&mut harness, words::FRAME, words::TOOL_POINT);
+    for (name, typed) in [("z", "0,15"), ("R", "90")] {
+        let field = words::tool_number(name);
+        click(&mut harness, &field);
+        harness.get_by_label(&field).type_text(typed);
+        harness.run_steps(2);
+        harness.key_press(egui::Key::Enter);
+        harness.run_steps(2);
+    }
+    click(&mut harness, words::SHOW);
+    let edits = edits(&mut harness);
+    let [Edit::SwitchNotation(PoseNotation { flange_from_tcp: Some(flange_from_tcp), .. })] = edits.as_slice() else {
+        panic!("{edits:?}");
+    };
+    assert!((flange_from_tcp.translation_mm() - Vec3::new(0.0, 0.0, 150.0)).norm() < 1e-9);
+    let quarter_turn = so3::exp(Vec3::z() * std::f64::consts::FRAC_PI_2);
+    assert!(flange_from_tcp.rotation().angle_to(&quarter_turn) < 1e-12);
+}
+
+#[test]
+fn both_are_one_step_of_undo_each() {
+    let session = sample();
+    let mut workbench = Workbench::new(Arc::new(|| {}));
+    workbench.open_session(session.clone(), None);
+    let kuka = PoseNotation::of(convention("kuka-abc"));
+    for (edit, keeps_poses) in [(Edit::SwitchNotation(kuka), true), (Edit::Reinterpret(kuka), false)] {
+        workbench.apply(Command::Edit { edit, gesture: None });
+        let document = workbench.document().expect("open");
+        assert_eq!(document.session.robot.notation, kuka);
+        assert_eq!(document.session.stations == session.stations, keeps_poses);
+        workbench.apply(Command::Undo);
+        assert_eq!(*workbench.document().expect("open").session, session);
+    }
+}
+
+#[test]
 fn reinterpreting_shows_what_it_does_and_asks_for_one_edit() {
     let session = sample();
     let (num_poses, num_frames) = (session.num_captures(), model::frames(&session).len());

@@ -10,7 +10,7 @@ use crate::ui::theme;
 use super::model::{Camera, Extent, NamedFrame};
 
 /// Length of a frame's arrows as a part of the picture's smaller side.
-const ARROW_PART: f32 = 0.11;
+const ARROW_PART: f32 = 0.12;
 /// The arrows of the base are longer by this.
 const BASE_FACTOR: f32 = 1.3;
 /// Letters of an arrow that comes towards the eye would stand on each other.
@@ -85,7 +85,8 @@ impl<'a> Picture<'a> {
             (corner + vec2(length + 12.0, -length - 22.0), words::BASE_DIRECTIONS, corner + vec2(10.0, -12.0))
         };
         self.triad(origin, [Vec3::x(), Vec3::y(), Vec3::z()], length, 1.0);
-        self.text(below, name, self.text);
+        let font = FontId::proportional(theme::SMALL_SIZE);
+        self.painter.text(below, Align2::LEFT_CENTER, name, font, self.text);
     }
 
     fn frame(&self, frame: &NamedFrame) {
@@ -94,7 +95,11 @@ impl<'a> Picture<'a> {
         let origin = self.place(frame.base_from_flange.translation_mm());
         self.triad(origin, axes, self.arrow, 2.0);
         self.painter.circle_filled(origin, 2.5, self.text);
-        self.text(origin + vec2(6.0, 8.0), &frame.label, self.text);
+        // Where the arrows do not run.
+        let seen = self.camera.seen(axes[0] + axes[1] + axes[2]);
+        let away = vec2(-to_screen(seen.x), to_screen(seen.y)).normalized() * 11.0;
+        let font = FontId::proportional(theme::SMALL_SIZE);
+        self.painter.text(origin + away, Align2::CENTER_CENTER, &frame.label, font, self.text);
     }
 
     fn triad(&self, origin: Pos2, axes: [Vec3; 3], length: f32, width: f32) {
@@ -110,11 +115,6 @@ impl<'a> Picture<'a> {
                 self.painter.text(tip, Align2::CENTER_CENTER, ["x", "y", "z"][idx], font, color);
             }
         }
-    }
-
-    fn text(&self, left: Pos2, text: &str, color: Color32) {
-        let font = FontId::proportional(theme::SMALL_SIZE);
-        self.painter.text(left, Align2::LEFT_CENTER, text, font, color);
     }
 }
 

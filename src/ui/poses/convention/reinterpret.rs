@@ -152,7 +152,7 @@ impl Reinterpretation {
         for (title, frames, half) in halves {
             let (head, picture) = half.split_top_bottom_at_y(half.top() + theme::ROW_HEIGHT);
             let palette = theme::palette(ui);
-            ui.painter().text(head.left_center(), egui::Align2::LEFT_CENTER, title, theme::strong_font(), palette.text);
+            ui.painter().text(head.left_top(), egui::Align2::LEFT_TOP, title, theme::strong_font(), palette.text);
             ui.painter().rect(
                 picture,
                 f32::from(theme::RADIUS),
