@@ -270,6 +270,25 @@ fn the_preview_keeps_the_numbers_and_says_how_far_poses_turn_and_move() {
 }
 
 #[test]
+fn a_jog_about_an_axis_of_the_tool_is_one_only_in_the_right_convention() {
+    let mut session = sample();
+    let before = convention("kuka-abc").rotation_from_angles_deg([70.0, -35.0, 160.0]);
+    for (station, rotation) in session.stations.iter_mut().zip([before, before * so3::exp(Vec3::z() * 0.4)]) {
+        station.captures[0].base_from_flange = Transform::from_parts(Vec3::new(500.0, 0.0, 300.0), rotation);
+        station.captures[0].written_angles = None;
+    }
+    let kuka = PoseNotation::of(convention("kuka-abc"));
+    let misread = Edit::SwitchNotation(kuka)
+        .apply(&session)
+        .and_then(|shown| Edit::Reinterpret(PoseNotation::of(convention("mitsubishi-abc"))).apply(&shown))
+        .expect("angles");
+    let preview = Preview::of(&misread, &kuka).expect("angles");
+    let (now, then) = (model::jog(&preview.now).expect("two"), model::jog(&preview.then).expect("two"));
+    assert!((then.axis_in_flange - Vec3::z()).norm() < 1e-9 && (then.angle_deg - 0.4_f64.to_degrees()).abs() < 1e-9);
+    assert!((now.axis_in_flange - Vec3::z()).norm() > 0.1, "{now:?}");
+}
+
+#[test]
 fn a_tool_point_stays_the_same_in_other_numbers() {
     let flange_from_tcp = Transform::from_parts(Vec3::new(10.0, -20.0, 150.0), so3::exp(Vec3::new(0.2, 1.1, -0.4)));
     let fanuc = PoseNotation { flange_from_tcp: Some(flange_from_tcp), ..PoseNotation::default() };

@@ -2,8 +2,6 @@
 
 use crate::calibrate::{Side, SideChoice};
 
-/// Title of the table.
-pub const TITLE: &str = "Poses of the flange in the base";
 /// Column.
 pub const STATION: &str = "station";
 /// Column.

@@ -6,6 +6,7 @@ use egui::{Key, Modifiers, RichText, Sense, Ui, vec2};
 use egui_extras::{Column, TableRow};
 
 use crate::app::{Command, Document};
+use crate::text::conventions::poses_title;
 use crate::text::poses as words;
 use crate::ui::widgets::tables::{faded_number_cell, head, number_cell, number_column, number_head, table};
 use crate::ui::widgets::{card_with_height, fixed, named_checkbox, symbol_button};
@@ -65,7 +66,7 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut PosesState)
     let height = ui.available_height();
     card_with_height(
         ui,
-        words::TITLE,
+        poses_title(&document.session.robot.notation),
         height,
         |ui| {
             let label = if is_all_unfolded { words::FOLD_ALL } else { words::UNFOLD_ALL };

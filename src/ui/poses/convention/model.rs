@@ -190,6 +190,27 @@ pub struct Change {
     pub z_then: Vec3,
 }
 
+/// How the tool turned from one station to the next: after a jog about one of its axes, about that axis, if the poses are
+/// read as the robot means them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jog {
+    /// How far, degrees.
+    pub angle_deg: f64,
+    /// About this axis, a unit vector in the flange; zero if it did not turn.
+    pub axis_in_flange: Vec3,
+}
+
+/// How the tool turned from the first station to the second.
+#[must_use]
+pub fn jog(frames: &[NamedFrame]) -> Option<Jog> {
+    /// Less is no turn but noise, rad.
+    const LEAST_TURN: f64 = 1e-6;
+    let [first, second, ..] = frames else { return None };
+    let turn = so3::log(&(first.base_from_flange.rotation().inverse() * second.base_from_flange.rotation()));
+    let axis_in_flange = turn.try_normalize(LEAST_TURN).unwrap_or_else(Vec3::zeros);
+    Some(Jog { angle_deg: turn.norm().to_degrees(), axis_in_flange })
+}
+
 /// What reading the numbers differently would do.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Preview {

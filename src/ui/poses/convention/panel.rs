@@ -25,7 +25,7 @@ const NARROW_WIDTH: f32 = 760.0;
 const BUTTONS_WIDTH: f32 = 340.0;
 
 /// What is open.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct ConventionState {
     search: String,
     shown_as: Option<ShownAs>,
@@ -35,7 +35,7 @@ pub struct ConventionState {
 }
 
 /// The dialog that chooses units and frame.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct ShownAs {
     draft: Draft,
     search: String,
