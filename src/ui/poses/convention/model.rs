@@ -59,10 +59,17 @@ impl Choice {
             && self.convention.is_none_or(|convention| convention.id == notation.convention.id)
     }
 
+    /// Whether each word searched for begins a word here.
     fn is_found(&self, search: &str) -> bool {
-        let text = format!("{} {}", self.label, self.detail).to_lowercase().replace('ä', "a");
-        search.split_whitespace().all(|word| text.contains(&word.to_lowercase().replace('ä', "a")))
+        let words = plain_words(&format!("{} {}", self.label, self.detail));
+        plain_words(search).iter().all(|searched| words.iter().any(|word| word.starts_with(searched)))
     }
+}
+
+/// Small letters without marks, as people type them.
+fn plain_words(text: &str) -> Vec<String> {
+    let text = text.to_lowercase().replace('ä', "a");
+    text.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).map(str::to_owned).collect()
 }
 
 /// The list in its groups, as far as a search leaves it; the makers first, custom orders last.

@@ -13,6 +13,8 @@ use super::model::{Camera, Extent, NamedFrame};
 const ARROW_PART: f32 = 0.12;
 /// The arrows of the base are longer by this.
 const BASE_FACTOR: f32 = 1.3;
+/// Wider than high by this, a picture has its spare room at the side.
+const WIDE: f32 = 1.4;
 /// Letters of an arrow that comes towards the eye would stand on each other.
 const LEAST_SEEN: f32 = 8.0;
 
@@ -43,6 +45,8 @@ struct Picture<'a> {
     camera: &'a Camera,
     extent: Extent,
     rect: Rect,
+    /// Where the base's directions do not stand.
+    free: Rect,
     points_per_mm: f32,
     arrow: f32,
     colors: [Color32; 3],
@@ -54,14 +58,19 @@ impl<'a> Picture<'a> {
         let size = rect.width().min(rect.height());
         let arrow = (size * ARROW_PART).clamp(18.0, 44.0);
         let extent = Extent::of(frames, camera);
+        let corner = if extent.has_base { 0.0 } else { arrow * 2.0 * BASE_FACTOR };
+        let is_wide = rect.width() > rect.height() * WIDE;
+        let free =
+            if is_wide { rect.with_min_x(rect.left() + corner) } else { rect.with_max_y(rect.bottom() - corner) };
         // Room for the arrows at the border, and for their letters.
-        let room = (rect.size() - egui::Vec2::splat(2.0 * (arrow + 14.0))).max(vec2(16.0, 16.0));
+        let room = (free.size() - egui::Vec2::splat(2.0 * (arrow + 14.0))).max(vec2(16.0, 16.0));
         let [width_mm, height_mm] = extent.size_mm.map(to_screen);
         Self {
             painter: ui.painter().with_clip_rect(rect.intersect(ui.clip_rect())),
             camera,
             extent,
             rect,
+            free,
             points_per_mm: (room.x / width_mm).min(room.y / height_mm),
             arrow,
             colors: theme::axis_colors(ui),
@@ -72,7 +81,7 @@ impl<'a> Picture<'a> {
     fn place(&self, in_base_mm: Vec3) -> Pos2 {
         let seen = self.camera.seen(in_base_mm);
         let [right, up] = self.extent.middle;
-        self.rect.center() + vec2(to_screen(seen.x - right), -to_screen(seen.y - up)) * self.points_per_mm
+        self.free.center() + vec2(to_screen(seen.x - right), -to_screen(seen.y - up)) * self.points_per_mm
     }
 
     fn base(&self) {

@@ -13,6 +13,7 @@ use crate::ui::widgets::tables::{self, head, number_cell, number_column, number_
 use crate::ui::widgets::{fixed, primary_button};
 
 use super::model::{self, Camera, Draft, Preview};
+use super::picker::Search;
 use super::{editor, paint};
 
 /// Width of the dialog, points.
@@ -36,7 +37,7 @@ pub enum Answer {
 #[derive(Clone, Debug)]
 pub struct Reinterpretation {
     draft: Draft,
-    search: String,
+    search: Search,
     camera: Camera,
     previewed: Option<Previewed>,
 }
@@ -55,7 +56,7 @@ impl Reinterpretation {
     pub fn of(session: &Session) -> Self {
         Self {
             draft: Draft::of(&session.robot.notation),
-            search: String::new(),
+            search: Search::default(),
             camera: Camera::default(),
             previewed: None,
         }
