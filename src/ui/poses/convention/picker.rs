@@ -42,7 +42,7 @@ pub fn show(
         *search = Search { text: String::new(), wants_focus: true };
     }
     let mut chosen = None;
-    Popup::from_toggle_button_response(&button)
+    let list = Popup::from_toggle_button_response(&button)
         .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
         .width(WIDTH)
         .frame(Frame::popup(ui.style()).inner_margin(8))
@@ -75,6 +75,10 @@ pub fn show(
                 ui.close();
             }
         });
+    if let Some(list) = list {
+        // A click that is pressed and let go within one frame brings the dialog up over its own list.
+        ui.ctx().move_to_top(list.response.layer_id);
+    }
     chosen
 }
 
