@@ -2,9 +2,12 @@
 #![expect(clippy::expect_used, reason = "a test that finds nothing to check must fail")]
 
 use handeye::calibrate::{BallProblem, Mount};
-use handeye::diagnose::convention::{LengthUnit, ReadingFit, examine, rank};
+use handeye::diagnose::convention::{
+    AngleReading, AngleUnit, Inversion, LengthUnit, PoseReading, ReadingFit, RotationReading, examine, rank,
+};
 use handeye::diagnose::{Case, Fault, Finding, Plot, Severity, remedy};
-use handeye::geometry::{PoseConvention, Rigid, Transform};
+use handeye::geometry::notation::{self, OrientationForm};
+use handeye::geometry::{AngleOrder, PoseConvention, PoseNotation, Rigid, Transform};
 use handeye::session::{Capture, Session, Target, WrittenAngles, ball_problem, measure, parse, to_json};
 use handeye::simulate::{SimulationOptions, simulate};
 use handeye::watch::Unwatched;
@@ -231,6 +234,39 @@ fn sessions_in_order_and_those_with_other_faults_have_no_finding() {
             }
         }
         assert_eq!(examined(&mixed_up).0, None, "case {case}: a mixed-up order is no convention");
+    }
+}
+
+#[test]
+fn a_remedy_changes_of_the_notation_only_what_it_found() {
+    let mut misread = session(0);
+    let notation = PoseNotation {
+        orientation: OrientationForm::QuaternionXyzw,
+        length_unit: notation::LengthUnit::Metres,
+        is_inverse: true,
+        ..PoseNotation::of(convention("kuka-abc"))
+    };
+    misread.robot.notation = notation;
+    let angles = |to: AngleOrder| PoseReading {
+        rotation: RotationReading::Angles(AngleReading {
+            from: convention("kuka-abc").order,
+            to,
+            unit: AngleUnit::Degrees,
+            second_at_station_idxs: Vec::new(),
+        }),
+        ..PoseReading::default()
+    };
+    let staubli = convention("staubli-rxryrz");
+    let no_maker = convention("intrinsic-yxz");
+    let inverse = PoseReading { inversion: Inversion::WholePose, ..PoseReading::default() };
+    for (reading, expected) in [
+        (angles(staubli.order), PoseNotation { convention: staubli, ..notation }),
+        (angles(no_maker.order), PoseNotation { convention: no_maker, ..notation }),
+        (inverse, PoseNotation { is_inverse: false, ..notation }),
+    ] {
+        let mut mended = misread.clone();
+        reading.apply(&mut mended);
+        assert_eq!(mended.robot.notation, expected);
     }
 }
 

@@ -89,9 +89,17 @@ fn a_maker_is_chosen_from_the_list_by_a_search_and_shows_its_usual_units() {
     let mut harness = Bench::harness(sample());
     choose(&mut harness, words::SHOWN_AS, "FANUC W P R");
     assert!(harness.query_by_label("KUKA A B C").is_some() && harness.query_by_label("UR RX RY RZ").is_some());
-    harness.get_by_label(words::SEARCH).type_text("stau");
+    // The search has the keyboard, and Enter takes the first that it finds.
+    harness.event(egui::Event::Text("kaw".to_owned()));
     harness.run_steps(4);
-    assert!(harness.query_by_label("KUKA A B C").is_none());
+    assert!(harness.query_by_label("KUKA A B C").is_none() && harness.query_by_label("Yaskawa Rx Ry Rz").is_none());
+    harness.key_press(egui::Key::Enter);
+    harness.run_steps(4);
+    assert_eq!(edits(&mut harness), [Edit::SwitchNotation(PoseNotation::of(convention("kawasaki-oat")))]);
+    assert!(harness.query_by_label(words::SEARCH).is_none(), "the list closes");
+    choose(&mut harness, words::SHOWN_AS, "FANUC W P R");
+    harness.event(egui::Event::Text("stau".to_owned()));
+    harness.run_steps(4);
     click(&mut harness, "Stäubli Rx Ry Rz");
     assert_eq!(edits(&mut harness), [Edit::SwitchNotation(PoseNotation::of(convention("staubli-rxryrz")))]);
 
@@ -134,6 +142,46 @@ fn units_and_frame_are_put_together_in_a_form() {
 }
 
 #[test]
+fn a_tool_point_is_typed_in_the_units_and_angles_chosen() {
+    let mut harness = Bench::harness(sample());
+    click(&mut harness, words::MORE);
+    choose(&mut harness, words::LENGTH_UNIT, words::length_unit(LengthUnit::Metres));
+    choose(&mut harness, words::FRAME, words::TOOL_POINT);
+    for (name, typed) in [("z", "0,15"), ("R", "90")] {
+        let field = words::tool_number(name);
+        click(&mut harness, &field);
+        harness.get_by_label(&field).type_text(typed);
+        harness.run_steps(2);
+        harness.key_press(egui::Key::Enter);
+        harness.run_steps(2);
+    }
+    click(&mut harness, words::SHOW);
+    let edits = edits(&mut harness);
+    let [Edit::SwitchNotation(PoseNotation { flange_from_tcp: Some(flange_from_tcp), .. })] = edits.as_slice() else {
+        panic!("{edits:?}");
+    };
+    assert!((flange_from_tcp.translation_mm() - Vec3::new(0.0, 0.0, 150.0)).norm() < 1e-9);
+    let quarter_turn = so3::exp(Vec3::z() * std::f64::consts::FRAC_PI_2);
+    assert!(flange_from_tcp.rotation().angle_to(&quarter_turn) < 1e-12);
+}
+
+#[test]
+fn both_are_one_step_of_undo_each() {
+    let session = sample();
+    let mut workbench = Workbench::new(Arc::new(|| {}));
+    workbench.open_session(session.clone(), None);
+    let kuka = PoseNotation::of(convention("kuka-abc"));
+    for (edit, keeps_poses) in [(Edit::SwitchNotation(kuka), true), (Edit::Reinterpret(kuka), false)] {
+        workbench.apply(Command::Edit { edit, gesture: None });
+        let document = workbench.document().expect("open");
+        assert_eq!(document.session.robot.notation, kuka);
+        assert_eq!(document.session.stations == session.stations, keeps_poses);
+        workbench.apply(Command::Undo);
+        assert_eq!(*workbench.document().expect("open").session, session);
+    }
+}
+
+#[test]
 fn reinterpreting_shows_what_it_does_and_asks_for_one_edit() {
     let session = sample();
     let (num_poses, num_frames) = (session.num_captures(), model::frames(&session).len());
@@ -142,7 +190,11 @@ fn reinterpreting_shows_what_it_does_and_asks_for_one_edit() {
     harness.get_by_label(words::REINTERPRET_WARNING);
     harness.get_by_label(words::NO_CHANGE);
     choose(&mut harness, words::ANGLES_OF, "FANUC W P R");
-    click(&mut harness, "KUKA A B C");
+    harness.event(egui::Event::Text("kuka".to_owned()));
+    harness.run_steps(4);
+    harness.key_press(egui::Key::Enter);
+    harness.run_steps(4);
+    harness.get_by_label(&words::choice_name(words::ANGLES_OF, "KUKA A B C"));
     assert!(harness.query_by_label(words::NO_CHANGE).is_none());
     harness.get_by_label(&words::picture_name(words::THEN, num_frames));
     assert!(edits(&mut harness).is_empty(), "nothing is changed before the button");
@@ -227,6 +279,25 @@ fn the_preview_keeps_the_numbers_and_says_how_far_poses_turn_and_move() {
         let turned = now.base_from_flange.rotation().angle_to(&then.base_from_flange.rotation()).to_degrees();
         assert!((change.turns_deg - turned).abs() < 1e-6 && change.moves_mm < 1e-9, "{change:?}");
     }
+}
+
+#[test]
+fn a_jog_about_an_axis_of_the_tool_is_one_only_in_the_right_convention() {
+    let mut session = sample();
+    let before = convention("kuka-abc").rotation_from_angles_deg([70.0, -35.0, 160.0]);
+    for (station, rotation) in session.stations.iter_mut().zip([before, before * so3::exp(Vec3::z() * 0.4)]) {
+        station.captures[0].base_from_flange = Transform::from_parts(Vec3::new(500.0, 0.0, 300.0), rotation);
+        station.captures[0].written_angles = None;
+    }
+    let kuka = PoseNotation::of(convention("kuka-abc"));
+    let misread = Edit::SwitchNotation(kuka)
+        .apply(&session)
+        .and_then(|shown| Edit::Reinterpret(PoseNotation::of(convention("mitsubishi-abc"))).apply(&shown))
+        .expect("angles");
+    let preview = Preview::of(&misread, &kuka).expect("angles");
+    let (now, then) = (model::jog(&preview.now).expect("two"), model::jog(&preview.then).expect("two"));
+    assert!((then.axis_in_flange - Vec3::z()).norm() < 1e-9 && (then.angle_deg - 0.4_f64.to_degrees()).abs() < 1e-9);
+    assert!((now.axis_in_flange - Vec3::z()).norm() > 0.1, "{now:?}");
 }
 
 #[test]

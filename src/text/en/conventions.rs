@@ -129,6 +129,23 @@ pub fn numbers_stay(notation: &PoseNotation) -> String {
     format!("The numbers as the table shows them, {name} in {units}, and what becomes of their poses:")
 }
 
+/// What the line below the preview is for.
+pub const SELF_CHECK_HINT: &str = "A check to make with any robot: jog it about one axis of its tool, say z, and take the poses \
+                                   before and after as the first two stations. Read as the robot means them, they turn about \
+                                   just that axis, here 0.00 0.00 1.00.";
+
+/// A turn about an axis.
+#[must_use]
+pub fn turn(angle_deg: &str, axis: &str) -> String {
+    format!("{angle_deg}° about {axis}")
+}
+
+/// How the tool turns from one station to another, in its own axes.
+#[must_use]
+pub fn self_check(first: &str, second: &str, now: &str, then: &str) -> String {
+    format!("From station {first} to {second}, in the tool's own axes: now {now}; then {then}")
+}
+
 /// How the preview names what it leaves out.
 #[must_use]
 pub fn more_stations(number: usize) -> String {
@@ -203,6 +220,17 @@ pub const fn notation_name(notation: &PoseNotation) -> &'static str {
         OrientationForm::Angles => notation.convention.label,
         OrientationForm::QuaternionWxyz => "Quaternion w x y z",
         OrientationForm::QuaternionXyzw => "Quaternion x y z w",
+    }
+}
+
+/// Whose poses the table shows, as its title.
+#[must_use]
+pub const fn poses_title(notation: &PoseNotation) -> &'static str {
+    match (notation.flange_from_tcp.is_some(), notation.is_inverse) {
+        (false, false) => "Poses of the flange in the base",
+        (true, false) => "Poses of a tool point in the base",
+        (false, true) => "Poses of the base in the flange",
+        (true, true) => "Poses of the base in a tool point",
     }
 }
 

@@ -8,8 +8,6 @@ use crate::session::table::{Column, column_name, column_unit};
 
 use super::plural;
 
-/// Title of the table.
-pub const TITLE: &str = "Poses of the flange in the base";
 /// Column.
 pub const CHECK: &str = "check";
 /// Nothing is the matter.

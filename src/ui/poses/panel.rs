@@ -5,6 +5,7 @@ use egui::{Align, Id, Key, Label, Layout, Modifiers, Ui, UiBuilder, vec2};
 use crate::app::{Command, Document};
 use crate::session::Place;
 use crate::session::table::has_cell;
+use crate::text::conventions::poses_title;
 use crate::text::poses as words;
 use crate::ui::widgets::card_with_height;
 use crate::ui::{PanelContext, theme};
@@ -50,7 +51,7 @@ fn show_table(ui: &mut Ui, context: &mut PanelContext<'_>, document: &Document, 
     let height = ui.available_height();
     card_with_height(
         ui,
-        words::TITLE,
+        poses_title(&document.session.robot.notation),
         height,
         |ui| {
             let stations = &document.session.stations;

@@ -9,7 +9,7 @@ use crate::text::conventions as words;
 use crate::ui::theme;
 
 use super::model::Draft;
-use super::picker;
+use super::picker::{self, Search};
 
 /// Room for the names of the rows, points.
 const NAMES_WIDTH: f32 = 84.0;
@@ -19,7 +19,7 @@ const MAX_NAME_WIDTH: f32 = 180.0;
 const MAX_TOOL_MM: f64 = 1e4;
 
 /// Shows the form. Where the numbers are given, only notations of `num_numbers` numbers can be chosen.
-pub fn show(ui: &mut Ui, draft: &mut Draft, num_numbers: Option<usize>, search: &mut String) {
+pub fn show(ui: &mut Ui, draft: &mut Draft, num_numbers: Option<usize>, search: &mut Search) {
     Grid::new("notation").num_columns(2).min_col_width(NAMES_WIDTH).spacing([12.0, 4.0]).show(ui, |ui| {
         orientation(ui, draft, num_numbers);
         if draft.without_tool().orientation == OrientationForm::Angles || draft.has_tool_point {
@@ -65,7 +65,7 @@ fn orientation(ui: &mut Ui, draft: &mut Draft, num_numbers: Option<usize>) {
     });
 }
 
-fn convention(ui: &mut Ui, draft: &mut Draft, search: &mut String) {
+fn convention(ui: &mut Ui, draft: &mut Draft, search: &mut Search) {
     let notation = *draft.without_tool();
     let angles = PoseNotation { orientation: OrientationForm::Angles, ..notation };
     row(ui, words::ANGLES_OF, |ui| {

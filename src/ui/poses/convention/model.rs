@@ -59,10 +59,17 @@ impl Choice {
             && self.convention.is_none_or(|convention| convention.id == notation.convention.id)
     }
 
+    /// Whether each word searched for begins a word here.
     fn is_found(&self, search: &str) -> bool {
-        let text = format!("{} {}", self.label, self.detail).to_lowercase().replace('ä', "a");
-        search.split_whitespace().all(|word| text.contains(&word.to_lowercase().replace('ä', "a")))
+        let words = plain_words(&format!("{} {}", self.label, self.detail));
+        plain_words(search).iter().all(|searched| words.iter().any(|word| word.starts_with(searched)))
     }
+}
+
+/// Small letters without marks, as people type them.
+fn plain_words(text: &str) -> Vec<String> {
+    let text = text.to_lowercase().replace('ä', "a");
+    text.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).map(str::to_owned).collect()
 }
 
 /// The list in its groups, as far as a search leaves it; the makers first, custom orders last.
@@ -188,6 +195,27 @@ pub struct Change {
     pub z_now: Vec3,
     /// And after.
     pub z_then: Vec3,
+}
+
+/// How the tool turned from one station to the next: after a jog about one of its axes, about that axis, if the poses are
+/// read as the robot means them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jog {
+    /// How far, degrees.
+    pub angle_deg: f64,
+    /// About this axis, a unit vector in the flange; zero if it did not turn.
+    pub axis_in_flange: Vec3,
+}
+
+/// How the tool turned from the first station to the second.
+#[must_use]
+pub fn jog(frames: &[NamedFrame]) -> Option<Jog> {
+    /// Less is no turn but noise, rad.
+    const LEAST_TURN: f64 = 1e-6;
+    let [first, second, ..] = frames else { return None };
+    let turn = so3::log(&(first.base_from_flange.rotation().inverse() * second.base_from_flange.rotation()));
+    let axis_in_flange = turn.try_normalize(LEAST_TURN).unwrap_or_else(Vec3::zeros);
+    Some(Jog { angle_deg: turn.norm().to_degrees(), axis_in_flange })
 }
 
 /// What reading the numbers differently would do.

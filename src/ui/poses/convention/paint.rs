@@ -10,9 +10,11 @@ use crate::ui::theme;
 use super::model::{Camera, Extent, NamedFrame};
 
 /// Length of a frame's arrows as a part of the picture's smaller side.
-const ARROW_PART: f32 = 0.11;
+const ARROW_PART: f32 = 0.12;
 /// The arrows of the base are longer by this.
 const BASE_FACTOR: f32 = 1.3;
+/// Wider than high by this, a picture has its spare room at the side.
+const WIDE: f32 = 1.4;
 /// Letters of an arrow that comes towards the eye would stand on each other.
 const LEAST_SEEN: f32 = 8.0;
 
@@ -43,6 +45,8 @@ struct Picture<'a> {
     camera: &'a Camera,
     extent: Extent,
     rect: Rect,
+    /// Where the base's directions do not stand.
+    free: Rect,
     points_per_mm: f32,
     arrow: f32,
     colors: [Color32; 3],
@@ -54,14 +58,19 @@ impl<'a> Picture<'a> {
         let size = rect.width().min(rect.height());
         let arrow = (size * ARROW_PART).clamp(18.0, 44.0);
         let extent = Extent::of(frames, camera);
+        let corner = if extent.has_base { 0.0 } else { arrow * 2.0 * BASE_FACTOR };
+        let is_wide = rect.width() > rect.height() * WIDE;
+        let free =
+            if is_wide { rect.with_min_x(rect.left() + corner) } else { rect.with_max_y(rect.bottom() - corner) };
         // Room for the arrows at the border, and for their letters.
-        let room = (rect.size() - egui::Vec2::splat(2.0 * (arrow + 14.0))).max(vec2(16.0, 16.0));
+        let room = (free.size() - egui::Vec2::splat(2.0 * (arrow + 14.0))).max(vec2(16.0, 16.0));
         let [width_mm, height_mm] = extent.size_mm.map(to_screen);
         Self {
             painter: ui.painter().with_clip_rect(rect.intersect(ui.clip_rect())),
             camera,
             extent,
             rect,
+            free,
             points_per_mm: (room.x / width_mm).min(room.y / height_mm),
             arrow,
             colors: theme::axis_colors(ui),
@@ -72,7 +81,7 @@ impl<'a> Picture<'a> {
     fn place(&self, in_base_mm: Vec3) -> Pos2 {
         let seen = self.camera.seen(in_base_mm);
         let [right, up] = self.extent.middle;
-        self.rect.center() + vec2(to_screen(seen.x - right), -to_screen(seen.y - up)) * self.points_per_mm
+        self.free.center() + vec2(to_screen(seen.x - right), -to_screen(seen.y - up)) * self.points_per_mm
     }
 
     fn base(&self) {
@@ -85,7 +94,8 @@ impl<'a> Picture<'a> {
             (corner + vec2(length + 12.0, -length - 22.0), words::BASE_DIRECTIONS, corner + vec2(10.0, -12.0))
         };
         self.triad(origin, [Vec3::x(), Vec3::y(), Vec3::z()], length, 1.0);
-        self.text(below, name, self.text);
+        let font = FontId::proportional(theme::SMALL_SIZE);
+        self.painter.text(below, Align2::LEFT_CENTER, name, font, self.text);
     }
 
     fn frame(&self, frame: &NamedFrame) {
@@ -94,7 +104,11 @@ impl<'a> Picture<'a> {
         let origin = self.place(frame.base_from_flange.translation_mm());
         self.triad(origin, axes, self.arrow, 2.0);
         self.painter.circle_filled(origin, 2.5, self.text);
-        self.text(origin + vec2(6.0, 8.0), &frame.label, self.text);
+        // Where the arrows do not run.
+        let seen = self.camera.seen(axes[0] + axes[1] + axes[2]);
+        let away = vec2(-to_screen(seen.x), to_screen(seen.y)).normalized() * 11.0;
+        let font = FontId::proportional(theme::SMALL_SIZE);
+        self.painter.text(origin + away, Align2::CENTER_CENTER, &frame.label, font, self.text);
     }
 
     fn triad(&self, origin: Pos2, axes: [Vec3; 3], length: f32, width: f32) {
@@ -110,11 +124,6 @@ impl<'a> Picture<'a> {
                 self.painter.text(tip, Align2::CENTER_CENTER, ["x", "y", "z"][idx], font, color);
             }
         }
-    }
-
-    fn text(&self, left: Pos2, text: &str, color: Color32) {
-        let font = FontId::proportional(theme::SMALL_SIZE);
-        self.painter.text(left, Align2::LEFT_CENTER, text, font, color);
     }
 }
 

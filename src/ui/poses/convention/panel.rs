@@ -11,8 +11,9 @@ use crate::ui::widgets::{card_with_height, chip, number_text, primary_button};
 use crate::ui::{PanelContext, theme};
 
 use super::model::{self, Camera, Draft};
+use super::picker::{self, Search};
 use super::reinterpret::{Answer, Reinterpretation, numbers_text};
-use super::{editor, paint, picker};
+use super::{editor, paint};
 
 /// Height of the picture's card below the table, points.
 const PICTURE_HEIGHT: f32 = 264.0;
@@ -25,9 +26,9 @@ const NARROW_WIDTH: f32 = 760.0;
 const BUTTONS_WIDTH: f32 = 340.0;
 
 /// What is open.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct ConventionState {
-    search: String,
+    search: Search,
     shown_as: Option<ShownAs>,
     reinterpretation: Option<Reinterpretation>,
     has_picture: bool,
@@ -35,10 +36,10 @@ pub struct ConventionState {
 }
 
 /// The dialog that chooses units and frame.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct ShownAs {
     draft: Draft,
-    search: String,
+    search: Search,
 }
 
 /// One row, the picture at the bottom if it is unfolded, and whatever dialog is open.
@@ -70,7 +71,7 @@ fn row(ui: &mut Ui, session: &Session, state: &mut ConventionState, commands: &m
             }
         }
         if ui.button(words::MORE).on_hover_text(words::SHOW_HINT).clicked() {
-            state.shown_as = Some(ShownAs { draft: Draft::of(&notation), search: String::new() });
+            state.shown_as = Some(ShownAs { draft: Draft::of(&notation), search: Search::default() });
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let picture = Button::selectable(state.has_picture, words::PICTURE).frame_when_inactive(true);

@@ -13,6 +13,13 @@ const WIDTH: f32 = 400.0;
 /// Height of the list, points.
 const HEIGHT: f32 = 400.0;
 
+/// What is searched for in the list.
+#[derive(Clone, Debug, Default)]
+pub struct Search {
+    text: String,
+    wants_focus: bool,
+}
+
 /// A button with the notation's name, cut where it would be wider than `max_width`; answers what is chosen from the list
 /// below it. `row` names the button for a screen reader.
 pub fn show(
@@ -21,7 +28,7 @@ pub fn show(
     max_width: f32,
     notation: &PoseNotation,
     with_quaternions: bool,
-    search: &mut String,
+    search: &mut Search,
 ) -> Option<PoseNotation> {
     let name = words::notation_name(notation);
     let button = ui
@@ -32,22 +39,22 @@ pub fn show(
         .inner;
     button.widget_info(|| WidgetInfo::labeled(egui::Role::ComboBox, ui.is_enabled(), words::choice_name(row, name)));
     if button.clicked() {
-        search.clear();
+        *search = Search { text: String::new(), wants_focus: true };
     }
     let mut chosen = None;
-    Popup::from_toggle_button_response(&button)
+    let list = Popup::from_toggle_button_response(&button)
         .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
         .width(WIDTH)
         .frame(Frame::popup(ui.style()).inner_margin(8))
         .show(|ui| {
-            search_field(ui, search, button.clicked());
+            let field = search_field(ui, search);
             ui.add_space(4.0);
-            let entered = ui.input(|input| input.key_pressed(egui::Key::Enter));
+            let entered = field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
             ScrollArea::vertical().max_height(HEIGHT).auto_shrink([false, true]).show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 0.0;
                 ui.spacing_mut().interact_size.y = theme::ROW_HEIGHT;
                 ui.spacing_mut().button_padding = vec2(8.0, 2.0);
-                let groups = model::choices(search, with_quaternions);
+                let groups = model::choices(&search.text, with_quaternions);
                 if groups.is_empty() {
                     ui.label(theme::dim(ui, words::NOTHING_FOUND));
                 }
@@ -68,19 +75,27 @@ pub fn show(
                 ui.close();
             }
         });
+    if let Some(list) = list {
+        // A click that is pressed and let go within one frame brings the dialog up over its own list.
+        ui.ctx().move_to_top(list.response.layer_id);
+    }
     chosen
 }
 
-fn search_field(ui: &mut Ui, search: &mut String, is_new: bool) {
-    let field = ui.add(TextEdit::singleline(search).hint_text(words::SEARCH).desired_width(f32::INFINITY));
+fn search_field(ui: &mut Ui, search: &mut Search) -> Response {
+    let field = ui.add(TextEdit::singleline(&mut search.text).hint_text(words::SEARCH).desired_width(f32::INFINITY));
     field.widget_info(|| {
-        let mut info = WidgetInfo::text_edit(true, "", search.as_str(), "");
+        let mut info = WidgetInfo::text_edit(true, "", search.text.as_str(), "");
         info.label = Some(words::SEARCH.to_owned());
         info
     });
-    if is_new {
+    // Over a dialog a list that has just opened does not get the focus at once.
+    search.wants_focus &= !field.has_focus();
+    if search.wants_focus {
         field.request_focus();
+        ui.ctx().request_repaint();
     }
+    field
 }
 
 fn entry(ui: &mut Ui, choice: &model::Choice, notation: &PoseNotation) -> Response {

@@ -13,6 +13,7 @@ use crate::ui::widgets::tables::{self, head, number_cell, number_column, number_
 use crate::ui::widgets::{fixed, primary_button};
 
 use super::model::{self, Camera, Draft, Preview};
+use super::picker::Search;
 use super::{editor, paint};
 
 /// Width of the dialog, points.
@@ -22,7 +23,7 @@ const FORM_WIDTH: f32 = 452.0;
 /// Height of the form and of the pictures, points.
 const FORM_HEIGHT: f32 = 308.0;
 /// Rows of the preview's table; the pictures have a few more.
-const MAX_ROWS: usize = 6;
+const MAX_ROWS: usize = 5;
 
 /// What came of the dialog.
 pub enum Answer {
@@ -33,16 +34,16 @@ pub enum Answer {
 }
 
 /// The open dialog.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Reinterpretation {
     draft: Draft,
-    search: String,
+    search: Search,
     camera: Camera,
     previewed: Option<Previewed>,
 }
 
 /// What was worked out last, and from what.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Previewed {
     revision: u64,
     notation: PoseNotation,
@@ -55,7 +56,7 @@ impl Reinterpretation {
     pub fn of(session: &Session) -> Self {
         Self {
             draft: Draft::of(&session.robot.notation),
-            search: String::new(),
+            search: Search::default(),
             camera: Camera::default(),
             previewed: None,
         }
@@ -152,7 +153,7 @@ impl Reinterpretation {
         for (title, frames, half) in halves {
             let (head, picture) = half.split_top_bottom_at_y(half.top() + theme::ROW_HEIGHT);
             let palette = theme::palette(ui);
-            ui.painter().text(head.left_center(), egui::Align2::LEFT_CENTER, title, theme::strong_font(), palette.text);
+            ui.painter().text(head.left_top(), egui::Align2::LEFT_TOP, title, theme::strong_font(), palette.text);
             ui.painter().rect(
                 picture,
                 f32::from(theme::RADIUS),
@@ -214,6 +215,16 @@ fn table(ui: &mut Ui, session: &Session, preview: &Preview) {
     if num_more > 0 {
         ui.label(theme::dim(ui, words::more_stations(num_more)));
     }
+    self_check(ui, preview);
+}
+
+/// From the first station to the second, for those who jogged the robot about one axis of its tool between them.
+fn self_check(ui: &mut Ui, preview: &Preview) {
+    let [first, second, ..] = preview.now.as_slice() else { return };
+    let (Some(now), Some(then)) = (model::jog(&preview.now), model::jog(&preview.then)) else { return };
+    let [now, then] = [now, then].map(|jog| words::turn(&fixed(jog.angle_deg, 2), &direction_text(jog.axis_in_flange)));
+    let sentence = words::self_check(&first.label, &second.label, &now, &then);
+    ui.label(theme::dim(ui, sentence)).on_hover_text(words::SELF_CHECK_HINT);
 }
 
 /// The numbers of a pose, on one line.
