@@ -123,6 +123,10 @@ impl Grid<'_> {
                 }
             },
         );
+        // Not before the rows are drawn, which it changes.
+        if let Some(label) = sheet.folds.take() {
+            sheet.fold(&label);
+        }
         let offset_x = shown.state.clamped_offset().x;
         self.head(ui, sheet, &layout, &edges, head, offset_x, &ink, commands);
         ui.advance_cursor_after_rect(area);
@@ -320,8 +324,7 @@ impl Grid<'_> {
             inside.spacing_mut().button_padding = vec2(2.0, 0.0);
             inside.spacing_mut().interact_size = fold.size();
             if symbol_button(&mut inside, symbol, &name).clicked() {
-                sheet.view.toggle(&station.label);
-                sheet.cursor.clamp(sheet.view.rows.len(), sheet.view.columns.len());
+                sheet.folds = Some(station.label.clone());
             }
         }
     }

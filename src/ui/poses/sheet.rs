@@ -38,6 +38,8 @@ pub struct Sheet {
     pub brings_into_view: bool,
     /// Whether the keyboard goes to the table at the end of the frame.
     pub takes_keyboard: bool,
+    /// The sweep to be folded or unfolded once the frame is drawn.
+    pub folds: Option<String>,
     /// Stations to be selected once the document has them.
     selects: Option<RangeInclusive<usize>>,
     num_editors: u64,
@@ -93,6 +95,27 @@ impl Sheet {
         let mut stations: Vec<usize> = self.selected_rows().iter().map(|row| row.place().station_idx).collect();
         stations.dedup();
         stations
+    }
+
+    /// Folds or unfolds a sweep; the cursor stays on its row.
+    pub fn fold(&mut self, label: &str) {
+        let place = self.cell().map(|(row, _)| row.place());
+        self.view.toggle(label);
+        self.stay_on(place);
+    }
+
+    /// Folds or unfolds all sweeps; the cursor stays on its row.
+    pub fn fold_all(&mut self, is_unfolded: bool) {
+        let place = self.cell().map(|(row, _)| row.place());
+        self.view.set_all_unfolded(is_unfolded);
+        self.stay_on(place);
+    }
+
+    fn stay_on(&mut self, place: Option<Place>) {
+        if let Some(row) = place.and_then(|place| self.view.row_of(place)) {
+            self.cursor = Cursor::at(row, self.cursor.column);
+        }
+        self.cursor.clamp(self.view.rows.len(), self.view.columns.len());
     }
 
     /// Goes to a cell, unfolding its sweep.
