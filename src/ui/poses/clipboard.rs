@@ -79,8 +79,10 @@ impl Sheet {
             _ => push(Edit::Several(edits), commands),
         }
         let last_column = (column_idx + num_columns).min(self.view.columns.len()).saturating_sub(1);
-        self.cursor = Cursor::at(row_idx, column_idx);
-        self.cursor.go_to((row_idx + num_rows).saturating_sub(1), last_column, true);
+        // With the corner that was pasted to as the cursor, so that typing goes on there.
+        let mut cursor = Cursor::at((row_idx + num_rows).saturating_sub(1), last_column);
+        cursor.go_to(row_idx, column_idx, true);
+        self.next_cursor = Some(cursor);
     }
 
     /// One line of values into each of the selected rows, over and over if more columns are selected.

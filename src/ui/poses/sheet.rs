@@ -41,6 +41,8 @@ pub struct Sheet {
     pub folds: Option<String>,
     /// Stations to be selected once the document has them.
     selects: Option<RangeInclusive<usize>>,
+    /// The cells to be selected once the document has them.
+    pub(super) next_cursor: Option<Cursor>,
     num_editors: u64,
 }
 
@@ -66,6 +68,10 @@ impl Sheet {
                 };
                 self.brings_into_view = true;
             }
+        }
+        if let Some(cursor) = self.next_cursor.take() {
+            self.cursor = cursor;
+            self.brings_into_view = true;
         }
         self.cursor.clamp(self.view.rows.len(), self.view.columns.len());
     }
