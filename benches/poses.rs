@@ -92,7 +92,9 @@ impl Table {
         });
         let primitives = self.ctx.tessellate(output.shapes, output.pixels_per_point);
         std::hint::black_box(primitives);
-        commands.into_iter().for_each(|command| self.workbench.apply(command));
+        for command in commands {
+            self.workbench.apply(command);
+        }
     }
 }
 

@@ -119,7 +119,9 @@ pub fn read_cells(session: &Session, typed: &[TypedCell]) -> ReadCells {
     for (place, cells) in by_place {
         let (Some(station), Some(capture)) = (session.stations.get(place.station_idx), capture_at(session, place))
         else {
-            cells.values().for_each(|cell| read.refuse(cell, CellProblem::NoSuchCell));
+            for cell in cells.values() {
+                read.refuse(cell, CellProblem::NoSuchCell);
+            }
             continue;
         };
         let mut take = |value: Result<Option<CellValue>, CellProblem>, cell: &TypedCell| match value {
@@ -275,10 +277,10 @@ fn read_pose(
     if is_quaternion && taken.iter().any(is_of_orientation) {
         let norm = numbers[3..].iter().map(|number| number * number).sum::<f64>().sqrt();
         let tolerance = limits::QUATERNION_NORM_TOLERANCE;
-        let reason = if !is_quaternion_readable {
-            Some(CellProblem::OthersUnreadable)
-        } else {
+        let reason = if is_quaternion_readable {
             ((norm - 1.0).abs() > tolerance).then_some(CellProblem::NotARotation { norm, tolerance })
+        } else {
+            Some(CellProblem::OthersUnreadable)
         };
         if let Some(reason) = reason {
             taken.iter().filter(|cell| is_of_orientation(cell)).for_each(|cell| read.refuse(cell, reason.clone()));

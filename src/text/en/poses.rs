@@ -213,23 +213,15 @@ pub fn pasted(
     num_held_back: usize,
     num_left_out: usize,
 ) -> String {
-    let mut text = format!("Pasted {num_rows} × {num_columns} cells.");
-    if num_refused > 0 {
-        text.push_str(&format!(
-            " {num_refused} could not be read and wait{} in place.",
-            if num_refused == 1 { "s" } else { "" }
-        ));
-    }
-    if num_held_back > 0 {
-        text.push_str(&format!(
-            " {num_held_back} new station{} left out until then.",
-            if num_held_back == 1 { " is" } else { "s are" }
-        ));
-    }
-    if num_left_out > 0 {
-        text.push_str(&format!(" {num_left_out} had no cell to go to."));
-    }
-    text
+    let waits = if num_refused == 1 { "waits" } else { "wait" };
+    let stations_are = if num_held_back == 1 { "station is" } else { "stations are" };
+    let parts = [
+        (true, format!("Pasted {num_rows} × {num_columns} cells.")),
+        (num_refused > 0, format!("{num_refused} could not be read and {waits} in place.")),
+        (num_held_back > 0, format!("{num_held_back} new {stations_are} left out until then.")),
+        (num_left_out > 0, format!("{num_left_out} had no cell to go to.")),
+    ];
+    parts.into_iter().filter(|(is_so, _)| *is_so).map(|(_, part)| part).collect::<Vec<_>>().join(" ")
 }
 
 /// Title's right side.

@@ -3,8 +3,8 @@
 use egui::text::{CCursor, CCursorRange};
 use egui::text_edit::TextEditState;
 use egui::{
-    Align2, Context, EventFilter, Frame, Id, Margin, Popup, PopupAnchor, Rect, Response, Stroke, StrokeKind, TextEdit,
-    TextStyle, Ui,
+    Align, Align2, Context, EventFilter, Frame, Id, Layout, Margin, Popup, PopupAnchor, Rect, Response, Stroke,
+    StrokeKind, TextEdit, TextStyle, Ui, UiBuilder, vec2,
 };
 
 use crate::session::Place;
@@ -63,9 +63,12 @@ impl Editor {
             .font(font)
             .align(if is_number { Align2::RIGHT_CENTER } else { Align2::LEFT_CENTER })
             .desired_width(rect.width())
-            .min_size(rect.size())
+            .min_size(vec2(rect.width(), 0.0))
             .event_filter(keys);
-        let response = ui.put(rect, field).labelled_by(label_id);
+        // In the line of the cell's own text, to the point.
+        let mut inside = ui.new_child(UiBuilder::new().max_rect(rect).layout(Layout::left_to_right(Align::Center)));
+        inside.spacing_mut().extra_text_line_spacing = 0.0;
+        let response = inside.add(field).labelled_by(label_id);
         ui.painter().rect_stroke(rect, 0.0, Stroke::new(2.0, palette.accent), StrokeKind::Inside);
         response
     }

@@ -27,7 +27,7 @@ impl Keyboard {
         events.extend(ours);
         let mut events = events.into_iter();
         let mut kept = others;
-        while let Some(event) = events.next() {
+        for event in events.by_ref() {
             if let Some(editor) = &sheet.editor {
                 // What stands before the key that ends it is for the field.
                 if let Some(ending) = ending_key(&event, editor.is_replacing) {
@@ -155,7 +155,7 @@ fn handle_key(
 ) -> bool {
     let session = &document.session;
     let Modifiers { shift, command, alt, .. } = modifiers;
-    let (last_row, last_column) = (sheet.view.rows.len() as isize, sheet.view.columns.len() as isize);
+    let (last_row, last_column) = (sheet.view.rows.len().cast_signed(), sheet.view.columns.len().cast_signed());
     let far = |step: isize, last: isize| if command { step * last } else { step };
     match key {
         Key::ArrowUp | Key::ArrowDown if alt => sheet.shift(session, key == Key::ArrowUp, commands),

@@ -1,6 +1,8 @@
 //! Step Poses: the stations in the robot's own convention, edited as in a spreadsheet.
 
+mod cells;
 mod checks;
+mod clipboard;
 pub mod convention;
 mod cursor;
 mod editor;

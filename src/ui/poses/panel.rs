@@ -131,7 +131,7 @@ fn follow_selection(context: &PanelContext<'_>, sheet: &mut Sheet, seen: Option<
 /// The user looks at the row of the cursor. A folded sweep stands for whichever of its captures was looked at.
 fn tell_selection(context: &mut PanelContext<'_>, sheet: &Sheet) -> Option<Place> {
     let (row, _) = sheet.cell()?;
-    let selection = &mut context.selection;
+    let selection = &mut *context.selection;
     let present = Place { station_idx: selection.station_idx, capture_idx: selection.capture_idx };
     if sheet.view.row_of(present) != Some(sheet.cursor.row) {
         let place = row.place();

@@ -6,11 +6,10 @@ use std::sync::Arc;
 
 use crate::app::{Command, Document};
 use crate::session::edit::{CellValue, free_label};
-use crate::session::table::block::{block_text, is_for_import, parse_block};
 use crate::session::table::fill::{fill_down, next_label};
 use crate::session::table::order::order_by;
-use crate::session::table::paste::{Spot, no_reading, paste, station_without_reading};
-use crate::session::table::{self, Column, TypedCell, column_name, column_unit, has_cell, read_cells};
+use crate::session::table::paste::{no_reading, station_without_reading};
+use crate::session::table::{self, Column, TypedCell, has_cell, read_cells};
 use crate::session::{Edit, Place, Reading, Row, Session, Station};
 use crate::text::poses as words;
 
@@ -38,8 +37,12 @@ pub struct Sheet {
     pub brings_into_view: bool,
     /// Whether the keyboard goes to the table at the end of the frame.
     pub takes_keyboard: bool,
+    /// The sweep to be folded or unfolded once the frame is drawn.
+    pub folds: Option<String>,
     /// Stations to be selected once the document has them.
     selects: Option<RangeInclusive<usize>>,
+    /// The cells to be selected once the document has them.
+    pub(super) next_cursor: Option<Cursor>,
     num_editors: u64,
 }
 
@@ -66,6 +69,10 @@ impl Sheet {
                 self.brings_into_view = true;
             }
         }
+        if let Some(cursor) = self.next_cursor.take() {
+            self.cursor = cursor;
+            self.brings_into_view = true;
+        }
         self.cursor.clamp(self.view.rows.len(), self.view.columns.len());
     }
 
@@ -79,11 +86,11 @@ impl Sheet {
         Some((*self.view.rows.get(self.cursor.row)?, *self.view.columns.get(self.cursor.column)?))
     }
 
-    fn selected_rows(&self) -> Vec<Row> {
+    pub(super) fn selected_rows(&self) -> Vec<Row> {
         self.cursor.rows().into_iter().filter_map(|row| self.view.rows.get(row).copied()).collect()
     }
 
-    fn selected_columns(&self) -> Vec<Column> {
+    pub(super) fn selected_columns(&self) -> Vec<Column> {
         let columns = self.cursor.columns(self.view.columns.len());
         self.view.columns.get(columns).map(<[Column]>::to_vec).unwrap_or_default()
     }
@@ -93,6 +100,27 @@ impl Sheet {
         let mut stations: Vec<usize> = self.selected_rows().iter().map(|row| row.place().station_idx).collect();
         stations.dedup();
         stations
+    }
+
+    /// Folds or unfolds a sweep; the cursor stays on its row.
+    pub fn fold(&mut self, label: &str) {
+        let place = self.cell().map(|(row, _)| row.place());
+        self.view.toggle(label);
+        self.stay_on(place);
+    }
+
+    /// Folds or unfolds all sweeps; the cursor stays on its row.
+    pub fn fold_all(&mut self, is_unfolded: bool) {
+        let place = self.cell().map(|(row, _)| row.place());
+        self.view.set_all_unfolded(is_unfolded);
+        self.stay_on(place);
+    }
+
+    fn stay_on(&mut self, place: Option<Place>) {
+        if let Some(row) = place.and_then(|place| self.view.row_of(place)) {
+            self.cursor = Cursor::at(row, self.cursor.column);
+        }
+        self.cursor.clamp(self.view.rows.len(), self.view.columns.len());
     }
 
     /// Goes to a cell, unfolding its sweep.
@@ -191,7 +219,7 @@ impl Sheet {
     }
 
     /// Reads typed cells, with what waits beside them: what can be read becomes an edit, the rest waits.
-    fn enter(&mut self, session: &Session, mut typed: Vec<TypedCell>, commands: &mut Vec<Command>) {
+    pub(super) fn enter(&mut self, session: &Session, mut typed: Vec<TypedCell>, commands: &mut Vec<Command>) {
         let mut places: Vec<Place> = typed.iter().map(|cell| cell.place).collect();
         places.sort_unstable();
         places.dedup();
@@ -209,29 +237,13 @@ impl Sheet {
     }
 
     /// Stations that were left out only until their texts could be read, and take part now.
-    fn released(&mut self, session: &Session, mut places: Vec<Place>) -> Vec<(Place, CellValue)> {
+    pub(super) fn released(&mut self, session: &Session, mut places: Vec<Place>) -> Vec<(Place, CellValue)> {
         places.sort_unstable();
         places.dedup_by_key(|place| place.station_idx);
         let is_complete = |place: &Place| {
             session.stations.get(place.station_idx).is_some_and(|station| self.pending.release(&station.label))
         };
         places.into_iter().filter(is_complete).map(|place| (place, CellValue::Used(true))).collect()
-    }
-
-    /// One line of values into each of the selected rows, over and over if more columns are selected.
-    fn paste_line(&mut self, session: &Session, line: &[String], commands: &mut Vec<Command>) {
-        let first = if self.cursor.has_whole_rows { 0 } else { *self.cursor.columns(self.view.columns.len()).start() };
-        let width = if line.len() == 1 { self.selected_columns().len() } else { line.len() };
-        let columns = &self.view.columns[first..(first + width).min(self.view.columns.len())];
-        let mut typed = Vec::new();
-        for row in self.selected_rows() {
-            for (column, text) in columns.iter().zip(line.iter().cycle()) {
-                if has_cell(session, row, *column) {
-                    typed.push(TypedCell { place: row.place(), column: *column, text: text.clone() });
-                }
-            }
-        }
-        self.enter(session, typed, commands);
     }
 
     /// Lets the selected stations take part, or leaves them out: the opposite of the one at the cursor.
@@ -397,78 +409,6 @@ impl Sheet {
             self.enter(session, typed, commands);
         }
     }
-
-    /// The selected cells as text for spreadsheets; the whole table with a line of names.
-    #[must_use]
-    pub fn copied(&self, session: &Session) -> String {
-        let (rows, columns) = (self.selected_rows(), self.selected_columns());
-        let mut block = Vec::with_capacity(rows.len() + 1);
-        let is_whole = rows.len() == self.view.rows.len() && columns.len() == self.view.columns.len() && rows.len() > 1;
-        if is_whole {
-            let notation = &session.robot.notation;
-            let head = |column: &Column| match column_unit(notation, *column) {
-                "" => column_name(notation, *column).to_owned(),
-                unit => format!("{} ({unit})", column_name(notation, *column)),
-            };
-            block.push(columns.iter().map(head).collect());
-        }
-        for row in rows {
-            let cell = |column: &Column| {
-                let is_there = has_cell(session, row, *column);
-                if is_there { self.text(session, row.place(), *column) } else { String::new() }
-            };
-            block.push(columns.iter().map(cell).collect());
-        }
-        block_text(&block)
-    }
-
-    /// Takes a text from the clipboard: cells for the table, or something for the import.
-    pub fn paste(&mut self, session: &Session, text: &str, commands: &mut Vec<Command>) {
-        if is_for_import(text) {
-            commands.push(Command::ImportText(text.to_owned()));
-            return;
-        }
-        let block = parse_block(text);
-        let rows = self.cursor.rows();
-        let columns = self.cursor.columns(self.view.columns.len());
-        let column_idx = if self.cursor.has_whole_rows { 0 } else { *columns.start() };
-        if let ([line], true) = (&block[..], rows.len() > 1 || columns.clone().count() > line_len(&block)) {
-            self.paste_line(session, line, commands);
-            return;
-        }
-        let row_idx = if self.view.rows.is_empty() { 0 } else { rows.first().copied().unwrap_or(0) };
-        let spot = Spot { rows: &self.view.rows, columns: &self.view.columns, row_idx, column_idx };
-        let pasted = paste(session, &spot, &block);
-        for (place, column) in &pasted.overwritten {
-            self.pending.forget(session, *place, *column);
-        }
-        for (label, refused) in &pasted.refused {
-            self.pending.insert(label.clone(), refused);
-        }
-        for label in &pasted.held_back {
-            self.pending.hold_back(label.clone());
-        }
-        let [num_rows, num_columns] = pasted.size;
-        self.said = Some(words::pasted(
-            [num_rows, num_columns],
-            pasted.refused.len(),
-            pasted.held_back.len(),
-            pasted.num_left_out,
-        ));
-        let mut edits: Vec<Edit> = pasted.edit.into_iter().collect();
-        let released = self.released(session, pasted.overwritten.iter().map(|(place, _)| *place).collect());
-        if !released.is_empty() {
-            edits.push(Edit::SetCells(released));
-        }
-        match edits.len() {
-            0 => {}
-            1 => edits.into_iter().for_each(|edit| push(edit, commands)),
-            _ => push(Edit::Several(edits), commands),
-        }
-        let last_column = (column_idx + num_columns).min(self.view.columns.len()).saturating_sub(1);
-        self.cursor = Cursor::at(row_idx, column_idx);
-        self.cursor.go_to((row_idx + num_rows).saturating_sub(1), last_column, true);
-    }
 }
 
 fn stations_among(rows: &[Row]) -> HashSet<usize> {
@@ -479,16 +419,12 @@ fn stations_among(rows: &[Row]) -> HashSet<usize> {
     rows.iter().filter_map(station).collect()
 }
 
-fn line_len(block: &[Vec<String>]) -> usize {
-    block.first().map_or(0, Vec::len)
-}
-
 fn change(values: Vec<(Place, CellValue)>, commands: &mut Vec<Command>) {
     if !values.is_empty() {
         push(Edit::SetCells(values), commands);
     }
 }
 
-fn push(edit: Edit, commands: &mut Vec<Command>) {
+pub(super) fn push(edit: Edit, commands: &mut Vec<Command>) {
     commands.push(Command::Edit { edit, gesture: None });
 }

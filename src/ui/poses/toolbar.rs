@@ -63,8 +63,7 @@ pub fn show(ui: &mut Ui, sheet: &mut Sheet, document: &Document, commands: &mut 
         let is_all_unfolded = sheet.view.is_all_unfolded();
         let label = if is_all_unfolded { words::FOLD_ALL } else { words::UNFOLD_ALL };
         if button(ui, label, label, true) {
-            sheet.view.set_all_unfolded(!is_all_unfolded);
-            sheet.cursor.clamp(sheet.view.rows.len(), sheet.view.columns.len());
+            sheet.fold_all(!is_all_unfolded);
         }
     }
     is_used.get()
