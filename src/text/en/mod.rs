@@ -7,6 +7,7 @@ pub mod compare;
 pub mod diagnosis;
 pub mod diagnosis_panel;
 pub mod edits;
+pub mod import_cli;
 pub mod methods;
 pub mod poses;
 pub mod shell;
