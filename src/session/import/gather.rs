@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::sync::Arc;
 
 use crate::calibrate::SideChoice;
@@ -67,8 +69,9 @@ pub(super) struct Gathered {
     notation: PoseNotation,
     base_from_user: Option<Transform<Base, Base>>,
     pub no_profile: Arc<Profile>,
-    /// How often a label was wanted.
-    labels: HashMap<String, usize>,
+    /// How often a label was wanted, by its hash: for a session of many poses the labels would be there twice. Two labels
+    /// of one hash would only cost one of them a number.
+    labels: HashMap<u64, u32>,
     num_poses: usize,
     num_normalised: usize,
     num_points: usize,
@@ -224,19 +227,23 @@ impl Gathered {
 
     /// The label, with a number behind it where another station has it.
     fn free_label(&mut self, wanted: String) -> String {
-        if !self.labels.contains_key(&wanted) {
-            self.labels.insert(wanted.clone(), 1);
-            return wanted;
-        }
+        let mut label = wanted.clone();
         loop {
-            let times = self.labels.entry(wanted.clone()).or_insert(1);
-            *times += 1;
-            let numbered = format!("{wanted} ({times})");
-            if !self.labels.contains_key(&numbered) {
-                self.labels.insert(numbered.clone(), 1);
-                return numbered;
+            if let Entry::Vacant(entry) = self.labels.entry(hash(&label)) {
+                entry.insert(1);
+                return label;
             }
+            let times = self.labels.entry(hash(&wanted)).or_insert(1);
+            *times += 1;
+            label = format!("{wanted} ({times})");
         }
+    }
+
+    /// Makes room for the stations of a text of so many rows.
+    pub fn reserve(&mut self, num_rows: usize, num_bytes: usize) {
+        /// No pose is shorter; a text of many short lines gets no more room than it could fill.
+        const MIN_POSE_BYTES: usize = 24;
+        self.stations.reserve_exact(num_rows.min(num_bytes / MIN_POSE_BYTES).min(MAX_POSES));
     }
 
     /// Notes what all poses together say, when every source is read.
@@ -245,6 +252,12 @@ impl Gathered {
             self.notes.push(Note::QuaternionsNormalised { num_poses: self.num_normalised });
         }
     }
+}
+
+fn hash(label: &str) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    label.hash(&mut hasher);
+    hasher.finish()
 }
 
 fn user_frame(numbers: &[f64; 6], notation: &PoseNotation) -> Option<Transform<Base, Base>> {

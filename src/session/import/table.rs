@@ -390,6 +390,7 @@ pub(super) fn read(
         Some(header) if columns.has_header => header.clone(),
         _ => (1..=columns.roles.len()).map(|column| column.to_string()).collect(),
     };
+    gathered.reserve(records(text).count(), text.len());
     let mut cells = Vec::new();
     let mut numbers = Vec::with_capacity(notation.num_numbers());
     for (idx, record) in records(text).skip_while(|record| record.line < layout.first_row_line).enumerate() {
