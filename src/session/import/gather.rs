@@ -42,9 +42,16 @@ pub(super) struct RawPose<'t> {
     pub profile: Option<&'t str>,
     /// Whether it is a further capture of the station before, if that has the same label.
     pub may_continue: bool,
-    /// Whether its source says that it is in the base, whatever the user frame of the others.
+    /// What its source says of it beside the others.
+    pub frames: OwnFrames,
+}
+
+/// What the source of a pose says of its frames, where that is not what it says of all poses.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct OwnFrames {
+    /// It is in the base, whatever the user frame of the others.
     pub is_in_base: bool,
-    /// Whether its source says that it is the flange's, whatever the tool of the others.
+    /// It is the flange's, whatever the tool of the others.
     pub is_of_flange: bool,
 }
 
@@ -147,11 +154,9 @@ impl Gathered {
     }
 
     fn capture(&mut self, raw: &RawPose<'_>) -> Result<Capture, (String, String)> {
-        let notation = match raw.is_of_flange {
-            true => PoseNotation { flange_from_tcp: None, ..self.notation },
-            false => self.notation,
-        };
-        let base_from_user = self.base_from_user.filter(|_| !raw.is_in_base);
+        let own_tool = self.notation.flange_from_tcp.filter(|_| !raw.frames.is_of_flange);
+        let notation = PoseNotation { flange_from_tcp: own_tool, ..self.notation };
+        let base_from_user = self.base_from_user.filter(|_| !raw.frames.is_in_base);
         let user_from_flange = notation.base_from_flange(raw.numbers).map_err(|problem| not_a_pose(&problem))?;
         let base_from_flange = match &base_from_user {
             Some(base_from_user) => *base_from_user * user_from_flange,
@@ -201,7 +206,7 @@ impl Gathered {
                 last.captures.push(capture);
             }
         } else {
-            let label = self.free_label(wanted.unwrap_or_else(|| (self.stations.len() + 1).to_string()));
+            let label = self.free_label(&wanted.unwrap_or_else(|| (self.stations.len() + 1).to_string()));
             self.stations.push(Station {
                 label,
                 enabled: !raw.is_disabled,
@@ -226,14 +231,14 @@ impl Gathered {
     }
 
     /// The label, with a number behind it where another station has it.
-    fn free_label(&mut self, wanted: String) -> String {
-        let mut label = wanted.clone();
+    fn free_label(&mut self, wanted: &str) -> String {
+        let mut label = wanted.to_owned();
         loop {
             if let Entry::Vacant(entry) = self.labels.entry(hash(&label)) {
                 entry.insert(1);
                 return label;
             }
-            let times = self.labels.entry(hash(&wanted)).or_insert(1);
+            let times = self.labels.entry(hash(wanted)).or_insert(1);
             *times += 1;
             label = format!("{wanted} ({times})");
         }
