@@ -1,12 +1,13 @@
 //! KUKA programs and data lists, `.src` and `.dat`: positions in braces, `{X 1,Y 2,Z 3,A 4,B 5,C 6,…}`.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 
 use crate::geometry::PoseNotation;
 use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
 use crate::watch::Cancelled;
 
-use super::gather::{Gathered, RawPose};
+use super::gather::{Gathered, OwnFrames, RawPose};
 use super::program::{Frames, Unknown, head, show};
 use super::read::Progress;
 use super::scan::Scanner;
@@ -177,10 +178,9 @@ pub(super) fn read(
             &source.name,
             &RawPose {
                 at,
-                label,
+                label: label.map(Cow::Borrowed),
                 numbers: &numbers,
-                is_in_base: base == Some(0.0),
-                is_of_flange: tool == Some(0.0),
+                frames: OwnFrames { is_in_base: base == Some(0.0), is_of_flange: tool == Some(0.0) },
                 ..RawPose::default()
             },
         );

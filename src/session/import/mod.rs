@@ -19,6 +19,7 @@ mod scan;
 mod table;
 mod text;
 mod ur;
+mod yaml;
 
 use std::path::PathBuf;
 
@@ -38,6 +39,14 @@ pub struct Source {
     pub name: String,
     /// Its text.
     pub text: String,
+}
+
+impl Source {
+    /// From the bytes of a file, in whatever encoding they are.
+    #[must_use]
+    pub fn from_bytes(name: String, bytes: Vec<u8>) -> Self {
+        Self { name, text: text::decode(bytes) }
+    }
 }
 
 /// What a source was taken for.

@@ -1,5 +1,7 @@
 //! Tables of numbers: what separates their cells, where the header ends, and what the columns mean.
 
+use std::borrow::Cow;
+
 use crate::calibrate::{Side, SideChoice};
 use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm, QUATERNION_NORM_TOLERANCE};
 use crate::geometry::{PoseNotation, Vec3};
@@ -54,11 +56,11 @@ pub(super) fn is_comment(record: &str, separator: Separator) -> bool {
         || (text.starts_with(';') && separator != Separator::Semicolon)
 }
 
-/// Whether a row is one of values: at least two numbers, and half of its cells.
+/// Whether a row is one of values: at least two numbers, and half of its cells; or x without a z.
 fn is_row_of_numbers(cells: &[Cell<'_>], has_decimal_comma: bool) -> bool {
     let num_filled = cells.iter().filter(|cell| !is_missing(cell.text)).count();
     let num_numbers = cells.iter().filter(|cell| number(cell.text, has_decimal_comma).is_some()).count();
-    num_numbers >= 2 && 2 * num_numbers >= num_filled
+    (num_numbers >= 2 && 2 * num_numbers >= num_filled) || (num_numbers == 1 && num_filled == 1 && cells.len() > 1)
 }
 
 /// What separates the cells, and whether the numbers have a decimal comma.
@@ -120,12 +122,16 @@ pub(super) fn layout(text: &str, options: &ImportOptions) -> Option<Layout> {
     let mut cells = Vec::new();
     // The two records before the first row of numbers, comments among them: "# x y z" is a header too.
     let mut before: [Option<Record<'_>>; 2] = [None, None];
+    let (mut first, mut second_line) = (None, 0);
     for record in records(text).take(MAX_SAMPLE_RECORDS) {
         split(record.text, separator, &mut cells);
         let is_comment = is_comment(record.text, separator);
         if !is_comment && is_row_of_numbers(&cells, has_decimal_comma) {
             if layout.sample.is_empty() {
                 layout.first_row_line = record.line;
+                first = cells.first().filter(|cell| cell.text.starts_with(['x', 'X'])).map(|_| record);
+            } else if layout.sample.len() == 1 {
+                second_line = record.line;
             }
             let row = cells.iter().take(MAX_COLUMNS);
             layout.sample.push(row.map(|cell| number(cell.text, has_decimal_comma).unwrap_or(f64::NAN)).collect());
@@ -138,6 +144,15 @@ pub(super) fn layout(text: &str, options: &ImportOptions) -> Option<Layout> {
     }
     if layout.sample.is_empty() {
         return None;
+    }
+    // Profiles may have numbers for names; then only the first cell tells, as in "x_mm, 1, 2".
+    if let Some(record) = first
+        && layout.sample.len() > 1
+        && layout.sample[0][0].is_nan()
+    {
+        before = [before[1], Some(record)];
+        layout.sample.remove(0);
+        layout.first_row_line = second_line;
     }
     layout.num_columns = usual_num_columns(&layout.sample);
     let names = |record: Record<'_>| {
@@ -188,18 +203,15 @@ pub(super) fn columns(layout: &Layout, options: &ImportOptions, notation: &PoseN
             }
         }
     }
-    let roles = match &options.roles {
-        Some(roles) => {
-            let mut roles = roles.clone();
-            roles.resize(named.len().max(roles.len()), Role::Ignore);
-            roles
+    let roles = if let Some(roles) = &options.roles {
+        let mut roles = roles.clone();
+        roles.resize(named.len().max(roles.len()), Role::Ignore);
+        roles
+    } else {
+        if !is_complete(&named) {
+            fill_by_values(&mut named, layout, &mut said);
         }
-        None => {
-            if !is_complete(&named) {
-                fill_by_values(&mut named, layout, &mut said);
-            }
-            named.iter().map(|role| role.unwrap_or(Role::Ignore)).collect()
-        }
+        named.iter().map(|role| role.unwrap_or(Role::Ignore)).collect()
     };
     if said.orientation.is_none() && roles.contains(&Role::Orientation(3)) {
         said.orientation = Some(OrientationForm::QuaternionWxyz);
@@ -246,10 +258,9 @@ fn fill_by_values(roles: &mut [Option<Role>], layout: &Layout, said: &mut Said) 
     // A row of a pose and its point: 6 or 7 numbers, and 0, 2 or 3 more; with a name or a time in front of it one more.
     let lead = match free.len() {
         6 => 0,
-        7 => usize::from(!quaternion_at(&free, 3)),
+        7 | 10 => usize::from(!quaternion_at(&free, 3)),
         8 => usize::from(quaternion_at(&free, 4) || first_is_label(&free)),
         9 => usize::from(!quaternion_at(&free, 3) && first_is_label(&free) && quaternion_at(&free, 4)),
-        10 => usize::from(!quaternion_at(&free, 3)),
         11 => 1,
         _ => return,
     };
@@ -375,6 +386,7 @@ pub(super) fn read(
         Some(header) if columns.has_header => header.clone(),
         _ => (1..=columns.roles.len()).map(|column| column.to_string()).collect(),
     };
+    gathered.reserve(records(text).count(), text.len());
     let mut cells = Vec::new();
     let mut numbers = Vec::with_capacity(notation.num_numbers());
     for (idx, record) in records(text).skip_while(|record| record.line < layout.first_row_line).enumerate() {
@@ -459,7 +471,7 @@ fn row<'t>(
         _ => None,
     };
     Ok(RawPose {
-        label: text(places.label),
+        label: text(places.label).map(unescaped),
         point_in_sensor: point(cells, places, number_at)?,
         side,
         is_disabled,
@@ -468,6 +480,11 @@ fn row<'t>(
         may_continue: true,
         ..RawPose::default()
     })
+}
+
+/// A cell's text with quotation marks as they were before they were doubled.
+fn unescaped(text: &str) -> Cow<'_, str> {
+    if text.contains("\"\"") { text.replace("\"\"", "\"").into() } else { text.into() }
 }
 
 /// The reduced point; none where all its cells are empty. A point of the laser plane has no column for y.

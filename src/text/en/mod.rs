@@ -10,6 +10,7 @@ pub mod diagnosis_panel;
 pub mod document;
 pub mod edits;
 pub mod import;
+pub mod import_cli;
 pub mod methods;
 pub mod poses;
 pub mod shell;
