@@ -1,6 +1,7 @@
 //! Document, results, jobs and notices, changed only by commands and finished jobs.
 
 mod edits;
+mod exports;
 mod files;
 mod imports;
 mod studies;
@@ -20,6 +21,7 @@ use super::jobs::{JobOutcome, Slot, Wake};
 use super::study::Study;
 use super::{Command, Document};
 
+use self::exports::Exported;
 use self::files::{Loaded, Save};
 pub use self::imports::ImportDraft;
 use self::imports::Imports;
@@ -85,6 +87,7 @@ pub struct Workbench {
     readings: Study<Vec<ReadingFit>>,
     bootstrap: Study<Bootstrap>,
     imports: Imports,
+    exporting: Slot<Exported>,
 }
 
 impl Workbench {
@@ -109,6 +112,7 @@ impl Workbench {
             readings: Study::default(),
             bootstrap: Study::default(),
             imports: Imports::default(),
+            exporting: Slot::default(),
         }
     }
 
@@ -213,6 +217,7 @@ impl Workbench {
             || self.readings.is_running()
             || self.bootstrap.is_running()
             || self.imports.is_busy()
+            || self.exporting.is_running()
     }
 
     /// Carries out one command.
@@ -306,7 +311,9 @@ impl Workbench {
                 self.notify_broken(what, &ended);
             }
         }
-        self.poll_imports() || changed
+        let imported = self.poll_imports();
+        let exported = self.poll_exports();
+        changed || imported || exported
     }
 
     /// Puts a session on the bench and solves it.

@@ -391,11 +391,11 @@ pub fn more_rows(num_shown: usize, num_rows: usize) -> String {
 pub fn note(note: &Note) -> String {
     match note {
         Note::UserFrameTakenAsBase { frame, num_poses } => format!(
-            "{} in {frame}, which the file does not define: taken as the robot's base. Give the frame at the left if it is not",
+            "{} in frame {frame}, which the file does not define: give it at the left, else it counts as the robot's base",
             poses_are(*num_poses)
         ),
         Note::ToolTakenAsFlange { tool, num_poses } => format!(
-            "{} of {tool}, which the file does not define: taken as the flange. Give the tool point at the left if it is not",
+            "{} of tool {tool}, which the file does not define: give its point at the left, else it counts as the flange",
             poses_are(*num_poses)
         ),
         Note::PosesWithoutReading { num_poses } => format!(
@@ -415,6 +415,9 @@ pub fn note(note: &Note) -> String {
         }
         Note::QuaternionsNormalised { num_poses } => {
             format!("{num_poses} quaternion{} rounded: brought back to norm 1", were(*num_poses))
+        }
+        Note::OtherGroups { num_poses } => {
+            format!("{} for several groups of axes: the first group was read", poses_are(*num_poses))
         }
         Note::JointPoses { num_poses } => {
             format!("{num_poses} position{} given as joint angles only, left out", were(*num_poses))
