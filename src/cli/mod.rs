@@ -9,6 +9,8 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 pub mod check;
+pub mod export;
+pub mod import;
 pub mod plan;
 pub mod report;
 pub mod screenshot;
@@ -41,6 +43,10 @@ pub enum Command {
     Solve(solve::SolveArgs),
     /// Validates a session file and lists what is odd about it
     Check(check::CheckArgs),
+    /// Imports poses and profiles (tables, robot programs, papers, folders) into a session file
+    Import(Box<import::ImportArgs>),
+    /// Exports the poses and profiles of a session file as CSV
+    Export(export::ExportArgs),
     /// Plans the stations to measure next
     Plan(plan::PlanArgs),
     /// Writes a simulated session with its truth
@@ -58,6 +64,8 @@ impl Command {
         match self {
             Self::Solve(args) => solve::run(args),
             Self::Check(args) => check::run(args),
+            Self::Import(args) => import::run(args),
+            Self::Export(args) => export::run(args),
             Self::Plan(args) => plan::run(args),
             Self::Simulate(args) => simulate::run(args),
             Self::Report(args) => report::run(args),

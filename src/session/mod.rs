@@ -3,6 +3,7 @@
 pub mod check;
 pub mod edit;
 pub mod error;
+pub mod export;
 pub mod format;
 pub mod history;
 pub mod import;

@@ -3,7 +3,6 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::text::decode;
 use super::{ImportError, Source};
 
 /// No file of poses or of a profile is as large.
@@ -52,7 +51,7 @@ pub(super) fn read_paths(paths: &[PathBuf]) -> Result<Vec<Source>, ImportError> 
             }
         }
         let bytes = fs::read(&path).map_err(|error| unreadable(&path, &error))?;
-        sources.push(Source { name, text: decode(bytes) });
+        sources.push(Source::from_bytes(name, bytes));
     }
     Ok(sources)
 }

@@ -70,6 +70,7 @@ pub(super) struct Gathered {
     labels: HashMap<String, usize>,
     num_poses: usize,
     num_normalised: usize,
+    num_points: usize,
 }
 
 impl Gathered {
@@ -86,6 +87,7 @@ impl Gathered {
             labels: HashMap::new(),
             num_poses: 0,
             num_normalised: 0,
+            num_points: 0,
         }
     }
 
@@ -105,6 +107,11 @@ impl Gathered {
 
     pub const fn num_poses(&self) -> usize {
         self.num_poses
+    }
+
+    /// Poses with a reduced point.
+    pub const fn num_points(&self) -> usize {
+        self.num_points
     }
 
     /// Whether there is room for more.
@@ -179,6 +186,7 @@ impl Gathered {
 
     fn add(&mut self, raw: &RawPose<'_>, capture: Capture) {
         self.num_poses += 1;
+        self.num_points += usize::from(raw.point_in_sensor.is_some());
         let wanted = raw.label.map(usable_label).filter(|label| !label.is_empty());
         let continues = match (&wanted, self.stations.last()) {
             (Some(wanted), Some(last)) => raw.may_continue && *wanted == last.label,

@@ -40,6 +40,14 @@ pub struct Source {
     pub text: String,
 }
 
+impl Source {
+    /// From the bytes of a file, in whatever encoding they are.
+    #[must_use]
+    pub fn from_bytes(name: String, bytes: Vec<u8>) -> Self {
+        Self { name, text: text::decode(bytes) }
+    }
+}
+
 /// What a source was taken for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {

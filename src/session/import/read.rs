@@ -119,7 +119,8 @@ impl<'o> Import<'o> {
         progress: &mut Progress<'_>,
     ) -> Result<(), ImportError> {
         let kind = recognised.kind();
-        let (poses_before, profiles_before) = (self.gathered.num_poses(), self.profiles.len());
+        let poses_before = self.gathered.num_poses();
+        let readings_before = self.profiles.len() + self.gathered.num_points();
         let mut preview = Preview::default();
         let mut filled = ImportOptions { kind: Some(kind), ..options.clone() };
         match recognised {
@@ -186,7 +187,7 @@ impl<'o> Import<'o> {
             name: source.name.clone(),
             kind,
             num_poses: self.gathered.num_poses() - poses_before,
-            num_readings: self.profiles.len() - profiles_before,
+            num_readings: self.profiles.len() + self.gathered.num_points() - readings_before,
         });
         Ok(())
     }
@@ -234,7 +235,7 @@ impl<'o> Import<'o> {
         if let Some(session) = &imported.session {
             imported.stations.splice(0..0, session.stations.iter().cloned());
         }
-        let has_profiles = imported.parts.iter().any(|part| part.num_readings > 0);
+        let has_profiles = imported.parts.iter().any(|part| part.num_readings > 0 && part.num_poses == 0);
         let has_preview = imported.preview.num_rows > 0;
         if imported.stations.is_empty() && !has_profiles && imported.session.is_none() {
             match imported.problems.first() {

@@ -8,6 +8,7 @@ pub mod diagnosis;
 pub mod diagnosis_panel;
 pub mod edits;
 pub mod import;
+pub mod import_cli;
 pub mod methods;
 pub mod poses;
 pub mod shell;
