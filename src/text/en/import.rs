@@ -164,6 +164,12 @@ pub const NAME: &str = "name";
 pub const TARGET: &str = "target";
 /// Field.
 pub const RADIUS: &str = "radius";
+/// Name of the field.
+pub const NAME_FIELD: &str = "Name of the session";
+/// Name of the list.
+pub const TARGET_FIELD: &str = "Target of the session";
+/// Name of the field.
+pub const RADIUS_FIELD: &str = "Radius of the ball in mm";
 /// Unit of the radius.
 pub const MM: &str = "mm";
 /// Target.
@@ -289,6 +295,12 @@ pub fn orientation_meaning(notation: &PoseNotation) -> String {
         OrientationForm::QuaternionWxyz => "the real part first".to_owned(),
         OrientationForm::QuaternionXyzw => "the real part last".to_owned(),
     }
+}
+
+/// Name of the control in a row of settings.
+#[must_use]
+pub fn setting(label: &str) -> String {
+    format!("Setting: {label}")
 }
 
 /// Name of the list over a column of the preview.
