@@ -4,13 +4,14 @@
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, sync_channel};
 
+use egui::accesskit::Role;
 use egui::{Event, Key};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use handeye::app::{Command, ImportInto, Workbench};
 use handeye::geometry::PoseNotation;
 use handeye::geometry::notation::LengthUnit;
-use handeye::session::import::{ImportOptions, Imported, Kind, Role};
+use handeye::session::import::{self, ImportOptions, Imported, Kind};
 use handeye::session::{self, Target, samples};
 use handeye::text::{import as words, shell as shell_words, start as start_words};
 use handeye::ui::dialogs::SavePath;
@@ -102,6 +103,12 @@ fn click<T>(harness: &mut Harness<'static, T>, name: &str) {
     harness.run_steps(3);
 }
 
+/// Clicks an entry of the list that is open.
+fn pick<T>(harness: &mut Harness<'static, T>, entry: &str) {
+    harness.get_by_role_and_label(Role::Button, entry).click();
+    harness.run_steps(3);
+}
+
 fn type_into<T>(harness: &mut Harness<'static, T>, name: &str, text: &str) {
     harness.get_by_label(name).focus();
     harness.run_steps(2);
@@ -113,13 +120,10 @@ fn type_into<T>(harness: &mut Harness<'static, T>, name: &str, text: &str) {
 fn a_role_chosen_over_a_column_yields_exactly_the_options_with_it() {
     let mut harness = Bench::with(TABLE).harness();
     let roles = harness.state().imported().preview.roles.clone();
-    assert_eq!(roles[1..3], [Role::Position(0), Role::Position(1)]);
+    assert_eq!(roles[1..3], [import::Role::Position(0), import::Role::Position(1)]);
     click(&mut harness, &words::column_role(2));
-    let y = words::role(Role::Position(1), &PoseNotation::default(), LengthUnit::Millimetres);
-    // The last of that name is the list's entry; the others are over their columns.
-    let entry = harness.get_all_by_label(&y).last().expect("an entry");
-    entry.click();
-    harness.run_steps(3);
+    let y = words::role(import::Role::Position(1), &PoseNotation::default(), LengthUnit::Millimetres);
+    pick(&mut harness, &y);
     let mut swapped = roles;
     swapped.swap(1, 2);
     let options = ImportOptions { roles: Some(swapped), ..ImportOptions::default() };
@@ -248,8 +252,7 @@ fn what_is_not_recognised_says_what_can_be_read_and_lets_the_form_be_chosen() {
     let mut harness = Bench::with("dear colleague, see the poses attached").harness();
     harness.get_by_label(words::CHOOSE_FORM);
     click(&mut harness, &words::setting(words::FORM));
-    harness.get_all_by_label(words::kind(Kind::UrScript)).last().expect("an entry").click();
-    harness.run_steps(3);
+    pick(&mut harness, words::kind(Kind::UrScript));
     let options = ImportOptions { kind: Some(Kind::UrScript), ..ImportOptions::default() };
     assert_eq!(harness.state().commands, [Command::SetImportOptions(Box::new(options))]);
 }
@@ -373,4 +376,17 @@ fn a_path_is_typed_for_every_purpose_where_there_is_no_dialog() {
         harness.run_steps(3);
         assert_eq!(harness.state().1.len(), 1, "{purpose:?}");
     }
+}
+
+#[test]
+fn columns_that_do_not_make_a_pose_leave_everything_to_be_set() {
+    let mut bench = Bench::with(TABLE);
+    let roles = vec![import::Role::Ignore; 10];
+    bench.apply(Command::SetImportOptions(Box::new(ImportOptions { roles: Some(roles), ..ImportOptions::default() })));
+    let mut harness = bench.harness();
+    harness.get_by_label(words::NOTHING);
+    harness.get_by_label(&words::column_role(1));
+    harness.get_by_label(&words::setting(words::ORIENTATION));
+    click(&mut harness, words::RESET);
+    assert_eq!(harness.state().commands, [Command::SetImportOptions(Box::default())]);
 }

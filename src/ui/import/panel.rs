@@ -183,13 +183,13 @@ fn heading(
     ui.add_space(8.0);
     let palette = theme::palette(ui);
     match &draft.outcome {
-        Some(Ok(imported)) => {
+        Some(Ok(imported)) if !imported.stations.is_empty() => {
             let (mark, color) = if imported.num_problems == 0 { ("✔", palette.good) } else { ("!", palette.warn) };
             ui.label(egui::RichText::new(mark).color(color));
             ui.label(words::outcome(imported));
         }
         Some(Err(ImportError::Cancelled)) | None => {}
-        Some(Err(_)) => {
+        Some(_) => {
             ui.label(egui::RichText::new("✖").color(palette.bad));
             ui.label(words::NOTHING);
         }

@@ -41,7 +41,7 @@ pub fn show(ui: &mut Ui, draft: &ImportDraft, typed: &mut Typed) -> Option<Impor
         changed = Some(options);
     };
     text(ui, imported, current, &mut set);
-    if imported.is_none_or(|imported| imported.parts.iter().any(|part| part.num_poses > 0)) {
+    if imported.is_none_or(model::may_have_poses) {
         poses(ui, current, typed, &mut set);
     }
     if imported.is_none_or(model::has_profiles) {
@@ -156,14 +156,14 @@ fn orientation(ui: &mut Ui, notation: &PoseNotation) -> Option<PoseNotation> {
                 picked = Some(choice);
             }
         };
-        ui.label(theme::dim(ui, words::MAKERS).small());
-        for convention in PoseConvention::ALL {
-            entry(ui, PoseNotation { convention, orientation: OrientationForm::Angles, ..*notation });
-        }
-        ui.separator();
         ui.label(theme::dim(ui, words::QUATERNIONS).small());
         for orientation in [OrientationForm::QuaternionWxyz, OrientationForm::QuaternionXyzw] {
             entry(ui, PoseNotation { orientation, ..*notation });
+        }
+        ui.separator();
+        ui.label(theme::dim(ui, words::MAKERS).small());
+        for convention in PoseConvention::ALL {
+            entry(ui, PoseNotation { convention, orientation: OrientationForm::Angles, ..*notation });
         }
         picked
     })
