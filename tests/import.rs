@@ -124,3 +124,174 @@ fn mistakes_are_listed_with_their_place() {
     );
     assert_eq!(imported.stations.len(), 2);
 }
+
+/// The examples of the documentation: name, poses, readings, text.
+fn examples() -> Vec<(String, usize, usize, String)> {
+    let doc = include_str!("../docs/import.md").split("<!-- example: ").skip(1);
+    doc.map(|part| {
+        let (head, rest) = part.split_once(" -->\n```\n").expect("a fence behind its comment");
+        let (text, _) = rest.split_once("```\n").expect("the fence is closed");
+        let words: Vec<&str> = head.split(' ').collect();
+        let count = |name: &str| {
+            let word = words.iter().find_map(|word| word.strip_prefix(name)).expect("a count");
+            word.parse().expect("a number")
+        };
+        (words[0].to_owned(), count("poses="), count("readings="), text.to_owned())
+    })
+    .collect()
+}
+
+#[test]
+fn the_examples_of_the_documentation_are_read() {
+    let examples = examples();
+    assert!(examples.len() > 10);
+    for (name, num_poses, num_readings, text) in examples {
+        let sources = [Source { name: name.clone(), text }];
+        let imported = read(&sources, &ImportOptions::default(), &PoseNotation::default(), &mut Unwatched);
+        let imported = imported.expect(&name);
+        assert!(imported.problems.is_empty(), "{name}: {:?}", imported.problems);
+        let part = &imported.parts[0];
+        assert_eq!((part.num_poses, part.num_readings), (num_poses, num_readings), "{name}: {part:?}");
+    }
+}
+
+#[track_caller]
+fn example(name: &str) -> Imported {
+    let (name, _, _, text) = examples().into_iter().find(|example| example.0 == name).expect("an example");
+    let sources = [Source { name, text }];
+    read(&sources, &ImportOptions::default(), &PoseNotation::default(), &mut Unwatched).expect("an import")
+}
+
+/// The first pose as numbers in the notation that it was read in, its tool point aside.
+#[track_caller]
+fn check_first(imported: &Imported, label: &str, expected: &[f64]) {
+    let station = &imported.stations[0];
+    assert_eq!(station.label, label);
+    let notation = imported.options.notation.expect("known");
+    let numbers = notation.numbers(&station.captures[0].base_from_flange);
+    for (found, expected) in numbers.iter().zip(expected) {
+        // Rounding, and quaternions rounded in the file.
+        assert!((found - expected).abs() < 2e-5, "{numbers:?}");
+    }
+}
+
+#[test]
+fn programs_give_their_poses_in_their_makers_numbers() {
+    let fanuc = example("scan.ls");
+    check_first(&fanuc, "1", &[562.415, -110.245, -139.394, -178.2, 0.5, 90.25]);
+    assert_eq!(fanuc.stations[1].label, "edge");
+    assert!(fanuc.notes.contains(&Note::ToolTakenAsFlange { tool: "UTOOL 1".to_owned(), num_poses: 2 }));
+    let abb = example("Scan.mod");
+    check_first(&abb, "p10", &[562.42, -110.25, 139.39, 0.18734, -0.90291, -0.36069, -0.13984]);
+    assert_eq!(abb.stations[2].label, "aRow{2}");
+    let tool = abb.options.notation.and_then(|notation| notation.flange_from_tcp).expect("the module's tool");
+    assert!((tool.translation_mm().z - 120.0).abs() < 1e-12);
+    let kuka = example("scan.dat");
+    check_first(&kuka, "P1", &[562.415, -110.245, 139.394, 90.25, 0.5, -178.2]);
+    assert!(kuka.notes.contains(&Note::JointPoses { num_poses: 1 }));
+    assert!(kuka.notes.contains(&Note::ToolTakenAsFlange { tool: "TOOL_DATA[1]".to_owned(), num_poses: 1 }));
+    let ur = example("scan.script");
+    assert_eq!(ur.stations[0].label, "Waypoint_1_p");
+    let tool = ur.options.notation.and_then(|notation| notation.flange_from_tcp).expect("the script's tool");
+    assert!((tool.translation_mm().z - 120.0).abs() < 1e-12);
+    check_first(&ur, "Waypoint_1_p", &[0.5624, -0.1102, 0.1394]);
+}
+
+#[test]
+fn a_user_frame_that_is_given_moves_the_poses() {
+    let (name, _, _, text) = examples().into_iter().find(|example| example.0 == "scan.ls").expect("an example");
+    let sources = [Source { name, text: text.replace("UF : 0", "UF : 2") }];
+    let plain = read(&sources, &ImportOptions::default(), &PoseNotation::default(), &mut Unwatched).expect("an import");
+    assert!(plain.notes.contains(&Note::UserFrameTakenAsBase { frame: "UFRAME 2".to_owned(), num_poses: 2 }));
+    let options =
+        ImportOptions { base_from_user_frame: Some([100.0, 0.0, 50.0, 0.0, 0.0, 90.0]), ..ImportOptions::default() };
+    let moved = read(&sources, &options, &PoseNotation::default(), &mut Unwatched).expect("an import");
+    assert!(!moved.notes.iter().any(|note| matches!(note, Note::UserFrameTakenAsBase { .. })));
+    let found = moved.stations[0].captures[0].base_from_flange.translation_mm();
+    // A quarter turn about z, then the shift.
+    let expected = [100.0 + 110.245, 562.415, 50.0 - 139.394];
+    assert!(found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-9), "{found}");
+}
+
+#[test]
+fn yaml_gives_poses_with_their_points() {
+    let imported = example("stations.yaml");
+    check_first(&imported, "A", &[0.5624, -0.1102, 0.1394, 0.0, 0.0, 1.0, 0.0]);
+    let Reading::Profile(profile) = &imported.stations[1].captures[0].reading else { panic!("a profile") };
+    assert_eq!((profile.x_mm(), profile.z_mm()), ([-1.0, 0.0].as_slice(), [57.2, 57.0].as_slice()));
+    let aliases = "a: &a [1, 2]\nb: [*a, *a]\n";
+    let sources = [Source { name: "bomb.yaml".to_owned(), text: aliases.to_owned() }];
+    let refusal = read(&sources, &ImportOptions::default(), &PoseNotation::default(), &mut Unwatched);
+    assert_eq!(
+        refusal.expect_err("refused").to_string(),
+        "bomb.yaml, line 2, column 5: found an alias, expected values that are written out"
+    );
+}
+
+#[test]
+fn a_folder_is_matched_by_the_numbers_in_the_names() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let put = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+        std::fs::write(path, text).expect("written");
+    };
+    put("poses.csv", "no,x,y,z,w,p,r\n1,500,0,300,10,20,170\n2,510,5,300,20,20,170\n10,520,9,300,30,20,170\n");
+    for number in [1, 2, 10] {
+        put(&format!("scans/2026-profile{number}.csv"), &format!("x,z\n-1,{number}\n0,\n1,{number}.5\n"));
+    }
+    put("notes.txt", "Nothing of interest.\n");
+    let sources = read_paths(&[folder.path().to_path_buf()]).expect("readable");
+    let imported =
+        read(&sources, &ImportOptions::default(), &PoseNotation::default(), &mut Unwatched).expect("an import");
+    for (station, first_z) in imported.stations.iter().zip([1.0, 2.0, 10.0]) {
+        let Reading::Profile(profile) = &station.captures[0].reading else { panic!("a profile") };
+        assert_eq!(profile.len(), 3, "station {}", station.label);
+        assert!((profile.z_mm()[0] - first_z).abs() < 1e-12 && profile.z_mm()[1].is_nan());
+    }
+    assert_eq!(imported.notes, [Note::SourcesLeftOut { names: vec!["notes.txt".to_owned()] }]);
+}
+
+#[test]
+fn what_is_exported_is_imported_the_same() {
+    use handeye::session::export::{TableStyle, poses_csv, write_profiles, write_text};
+    use handeye::session::import::Separator;
+    for name in ["clean-sweeps.json", "lin-mu-2019-table-1.json", "dirty-profiles.json"] {
+        for style in [TableStyle::default(), TableStyle { separator: Separator::Semicolon, has_decimal_comma: true }] {
+            let mut session = sample(name);
+            session.stations[0].label = "#1 \"left\", 1".to_owned();
+            session.stations[1].enabled = false;
+            let folder = tempfile::tempdir().expect("a folder");
+            let table = poses_csv(&session, &session.robot.notation, style);
+            write_text(&folder.path().join("poses.csv"), &table, false).expect("written");
+            write_profiles(&session, &folder.path().join("profiles"), style, false).expect("written");
+            let sources = read_paths(&[folder.path().to_path_buf()]).expect("readable");
+            let imported = read(&sources, &ImportOptions::default(), &session.robot.notation, &mut Unwatched);
+            let imported = imported.expect("an import");
+            assert!(imported.problems.is_empty(), "{name}: {:?}", imported.problems);
+            for (found, expected) in imported.stations.iter().zip(&session.stations) {
+                assert_eq!(
+                    (&found.label, found.enabled, found.side),
+                    (&expected.label, expected.enabled, expected.side)
+                );
+                for (found, expected) in found.captures.iter().zip(&expected.captures) {
+                    let apart = found.base_from_flange.rotation().angle_to(&expected.base_from_flange.rotation());
+                    // The project's promise for angles; numbers are written to the last bit.
+                    assert!(apart.to_degrees() < 1e-9, "{apart}");
+                    assert_eq!(found.step_mm, expected.step_mm);
+                    assert_eq!(found.reading, expected.reading);
+                }
+            }
+            assert_eq!(imported.stations.len(), session.stations.len());
+        }
+    }
+}
+
+#[test]
+fn a_session_adds_its_stations_to_another() {
+    let text = include_str!("../sample_sessions/lin-mu-2019-table-1.json");
+    let sources = ["a.json", "b.json"].map(|name| Source { name: name.to_owned(), text: text.to_owned() });
+    let imported =
+        read(&sources, &ImportOptions::default(), &PoseNotation::default(), &mut Unwatched).expect("an import");
+    assert_eq!((imported.parts[0].kind, imported.stations.len()), (Kind::Session, 10));
+}

@@ -1,5 +1,7 @@
 //! ABB modules, `.mod`: robtargets, with the tools and work objects of the same module.
 
+use std::borrow::Cow;
+
 use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
 use crate::geometry::{PoseConvention, PoseNotation, Transform};
 use crate::watch::Cancelled;
@@ -253,6 +255,7 @@ fn target(
     let at = scanner.place(start);
     let numbers = [position.as_slice(), quaternion.as_slice()].concat();
     show(preview, at.0, label.unwrap_or_default(), &numbers);
-    gathered.take(&source.name, &RawPose { at, label, numbers: &numbers, ..RawPose::default() });
+    gathered
+        .take(&source.name, &RawPose { at, label: label.map(Cow::Borrowed), numbers: &numbers, ..RawPose::default() });
     true
 }

@@ -85,7 +85,14 @@ pub(super) fn read(
         show(preview, at.0, label, &numbers);
         gathered.take(
             &source.name,
-            &RawPose { at, label: Some(label), numbers: &numbers, is_in_base, is_of_flange, ..RawPose::default() },
+            &RawPose {
+                at,
+                label: Some(label.into()),
+                numbers: &numbers,
+                is_in_base,
+                is_of_flange,
+                ..RawPose::default()
+            },
         );
     }
     unknown.note(gathered);

@@ -1,5 +1,6 @@
 //! From the poses of any source to stations, with what could not be read listed on the way.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -24,7 +25,7 @@ pub(super) struct RawPose<'t> {
     /// Line and column of its beginning, from 1.
     pub at: (usize, usize),
     /// The station's name; its number where there is none.
-    pub label: Option<&'t str>,
+    pub label: Option<Cow<'t, str>>,
     /// The numbers, as the notation has them.
     pub numbers: &'t [f64],
     /// The reduced point.
@@ -187,7 +188,7 @@ impl Gathered {
     fn add(&mut self, raw: &RawPose<'_>, capture: Capture) {
         self.num_poses += 1;
         self.num_points += usize::from(raw.point_in_sensor.is_some());
-        let wanted = raw.label.map(usable_label).filter(|label| !label.is_empty());
+        let wanted = raw.label.as_deref().map(usable_label).filter(|label| !label.is_empty());
         let continues = match (&wanted, self.stations.last()) {
             (Some(wanted), Some(last)) => raw.may_continue && *wanted == last.label,
             _ => false,
@@ -211,6 +212,13 @@ impl Gathered {
             let station_idx = self.stations.len() - 1;
             let capture_idx = self.stations[station_idx].captures.len() - 1;
             self.profile_keys.push(ProfileKey { station_idx, capture_idx, name: usable_label(name) });
+        }
+    }
+
+    /// Gives the pose that was taken last its reading.
+    pub fn set_last_reading(&mut self, reading: Reading) {
+        if let Some(capture) = self.stations.last_mut().and_then(|station| station.captures.last_mut()) {
+            capture.reading = reading;
         }
     }
 

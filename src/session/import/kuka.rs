@@ -1,5 +1,6 @@
 //! KUKA programs and data lists, `.src` and `.dat`: positions in braces, `{X 1,Y 2,Z 3,A 4,B 5,C 6,…}`.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 
 use crate::geometry::PoseNotation;
@@ -177,7 +178,7 @@ pub(super) fn read(
             &source.name,
             &RawPose {
                 at,
-                label,
+                label: label.map(Cow::Borrowed),
                 numbers: &numbers,
                 is_in_base: base == Some(0.0),
                 is_of_flange: tool == Some(0.0),

@@ -19,6 +19,7 @@ mod scan;
 mod table;
 mod text;
 mod ur;
+mod yaml;
 
 use std::path::PathBuf;
 

@@ -1,6 +1,8 @@
 //! Tables as papers print them: named values (`q0 = 0.07921`, `t1 = 306.433`, `xs = -26.25`, `xb = 324.442`), a station over
 //! several lines, as text or Markdown, with whatever prose stands around.
 
+use std::borrow::Cow;
+
 use crate::geometry::notation::{LengthUnit, OrientationForm};
 use crate::geometry::{PoseNotation, Vec3};
 use crate::session::Published;
@@ -280,7 +282,7 @@ pub(super) fn read(
             &source.name,
             &RawPose {
                 at: row.at,
-                label: label.as_deref(),
+                label: label.map(Cow::Owned),
                 numbers: &[t1, t2, t3, q0, q1, q2, q3],
                 point_in_sensor: row.triple(POINT),
                 ..RawPose::default()

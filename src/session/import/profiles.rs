@@ -24,16 +24,17 @@ const MAX_PROFILE_COLUMNS: usize = 4096;
 /// Rows between two looks at whether anybody still waits.
 const ROWS_BETWEEN_REPORTS: usize = 1024;
 
+/// The column that the header names so: `x`, `X [mm]`, `x_mm`.
+pub(super) fn named(layout: &Layout, name: &str) -> Option<usize> {
+    layout.header.as_ref()?.iter().position(|cell| {
+        let cell = cell.trim().to_lowercase();
+        cell.strip_prefix(name).is_some_and(|rest| !rest.starts_with(char::is_alphanumeric))
+    })
+}
+
 /// Where x and z stand in a table of one profile.
 fn x_and_z(layout: &Layout) -> (usize, usize) {
-    let named = |name: &str| {
-        let header = layout.header.as_ref()?;
-        header.iter().position(|cell| {
-            let cell = cell.trim().to_lowercase();
-            cell.strip_prefix(name).is_some_and(|rest| !rest.starts_with(char::is_alphanumeric))
-        })
-    };
-    match (named("x"), named("z")) {
+    match (named(layout, "x"), named(layout, "z")) {
         (Some(x), Some(z)) => (x, z),
         _ if layout.num_columns >= 3 => {
             // A number of the point in front, or y = 0 in the middle.

@@ -131,6 +131,15 @@ impl<'o> Import<'o> {
                 self.imported.published = printed::read(source, &tables, &mut self.gathered, &mut preview);
                 filled.notation = Some(notation);
             }
+            Recognised::Yaml(document) => {
+                if document.has_poses() {
+                    let notation = options.notation.unwrap_or_else(|| document.notation(self.fallback));
+                    self.gathered.set_notation(notation, options.base_from_user_frame);
+                    filled.notation = Some(notation);
+                }
+                let read = document.read(source, options, &mut self.gathered, &mut preview, progress)?;
+                self.profiles.extend(read);
+            }
             Recognised::Program(kind) => {
                 let mut frame = options.base_from_user_frame;
                 let recognised = match kind {

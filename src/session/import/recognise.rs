@@ -3,7 +3,7 @@
 use crate::geometry::PoseNotation;
 
 use super::table::{self, Columns, Layout};
-use super::{ImportOptions, Kind, Role, abb, fanuc, kuka, printed, ur};
+use super::{ImportOptions, Kind, Role, abb, fanuc, kuka, printed, profiles, ur, yaml};
 
 /// What was found on the way and is needed for reading.
 pub(super) enum Recognised {
@@ -15,6 +15,8 @@ pub(super) enum Recognised {
     Printed(Box<printed::Tables>),
     /// A robot's program.
     Program(Kind),
+    /// YAML or JSON.
+    Yaml(Box<yaml::Document>),
 }
 
 impl Recognised {
@@ -23,12 +25,16 @@ impl Recognised {
             Self::Session => Kind::Session,
             Self::Table(kind, ..) | Self::Program(kind) => *kind,
             Self::Printed(_) => Kind::PrintedTable,
+            Self::Yaml(_) => Kind::Yaml,
         }
     }
 
     /// Whether it gives poses.
     pub const fn has_poses(&self) -> bool {
-        !matches!(self.kind(), Kind::Profile | Kind::ProfileColumns)
+        match self {
+            Self::Yaml(document) => document.has_poses(),
+            _ => !matches!(self.kind(), Kind::Profile | Kind::ProfileColumns),
+        }
     }
 }
 
@@ -40,7 +46,6 @@ pub(super) fn recognise(
     options: &ImportOptions,
     notation: &PoseNotation,
 ) -> Option<Recognised> {
-    let _ = name;
     match kind {
         Some(Kind::Session) => return Some(Recognised::Session),
         Some(Kind::PrintedTable) => return printed::find(text).map(|tables| Recognised::Printed(Box::new(tables))),
@@ -49,6 +54,7 @@ pub(super) fn recognise(
             let columns = table::columns(&layout, options, notation);
             return Some(Recognised::Table(kind, Box::new(layout), columns));
         }
+        Some(Kind::Yaml) => return yaml::document(text).map(|document| Recognised::Yaml(Box::new(document))),
         Some(kind @ (Kind::FanucProgram | Kind::AbbModule | Kind::KukaProgram | Kind::UrScript)) => {
             return Some(Recognised::Program(kind));
         }
@@ -69,10 +75,18 @@ pub(super) fn recognise(
     if let Some((kind, _)) = programs.iter().find(|(_, is_one)| is_one(text)) {
         return Some(Recognised::Program(*kind));
     }
-    let layout = table::layout(text, options)?;
-    let columns = table::columns(&layout, options, notation);
-    let kind = table_kind(&layout, &columns);
-    Some(Recognised::Table(kind, Box::new(layout), columns))
+    let document = yaml::is_yaml(name, text).then(|| yaml::document(text)).flatten();
+    let layout = match &document {
+        Some(document) if !document.is_empty() => None,
+        // What is no YAML after all may still be a table.
+        _ => table::layout(text, options),
+    };
+    if let Some(layout) = layout {
+        let columns = table::columns(&layout, options, notation);
+        let kind = table_kind(&layout, &columns);
+        return Some(Recognised::Table(kind, Box::new(layout), columns));
+    }
+    document.map(|document| Recognised::Yaml(Box::new(document)))
 }
 
 /// Whether rows and columns are poses or profiles.
@@ -85,6 +99,9 @@ fn table_kind(layout: &Layout, columns: &Columns) -> Kind {
     }
     match layout.num_columns {
         ..=2 => Kind::Profile,
+        _ if profiles::named(layout, "x") == Some(0) && profiles::named(layout, "z").is_none() && !is_pose => {
+            Kind::ProfileColumns
+        }
         3 if !is_along_a_line(layout) || is_numbered_or_flat(layout) => Kind::Profile,
         3 => Kind::ProfileColumns,
         _ if is_along_a_line(layout) => Kind::ProfileColumns,

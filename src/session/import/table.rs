@@ -1,5 +1,7 @@
 //! Tables of numbers: what separates their cells, where the header ends, and what the columns mean.
 
+use std::borrow::Cow;
+
 use crate::calibrate::{Side, SideChoice};
 use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm, QUATERNION_NORM_TOLERANCE};
 use crate::geometry::{PoseNotation, Vec3};
@@ -54,11 +56,11 @@ pub(super) fn is_comment(record: &str, separator: Separator) -> bool {
         || (text.starts_with(';') && separator != Separator::Semicolon)
 }
 
-/// Whether a row is one of values: at least two numbers, and half of its cells.
+/// Whether a row is one of values: at least two numbers, and half of its cells; or x without a z.
 fn is_row_of_numbers(cells: &[Cell<'_>], has_decimal_comma: bool) -> bool {
     let num_filled = cells.iter().filter(|cell| !is_missing(cell.text)).count();
     let num_numbers = cells.iter().filter(|cell| number(cell.text, has_decimal_comma).is_some()).count();
-    num_numbers >= 2 && 2 * num_numbers >= num_filled
+    (num_numbers >= 2 && 2 * num_numbers >= num_filled) || (num_numbers == 1 && num_filled == 1 && cells.len() > 1)
 }
 
 /// What separates the cells, and whether the numbers have a decimal comma.
@@ -120,12 +122,16 @@ pub(super) fn layout(text: &str, options: &ImportOptions) -> Option<Layout> {
     let mut cells = Vec::new();
     // The two records before the first row of numbers, comments among them: "# x y z" is a header too.
     let mut before: [Option<Record<'_>>; 2] = [None, None];
+    let (mut first, mut second_line) = (None, 0);
     for record in records(text).take(MAX_SAMPLE_RECORDS) {
         split(record.text, separator, &mut cells);
         let is_comment = is_comment(record.text, separator);
         if !is_comment && is_row_of_numbers(&cells, has_decimal_comma) {
             if layout.sample.is_empty() {
                 layout.first_row_line = record.line;
+                first = cells.first().filter(|cell| cell.text.starts_with(['x', 'X'])).map(|_| record);
+            } else if layout.sample.len() == 1 {
+                second_line = record.line;
             }
             let row = cells.iter().take(MAX_COLUMNS);
             layout.sample.push(row.map(|cell| number(cell.text, has_decimal_comma).unwrap_or(f64::NAN)).collect());
@@ -138,6 +144,15 @@ pub(super) fn layout(text: &str, options: &ImportOptions) -> Option<Layout> {
     }
     if layout.sample.is_empty() {
         return None;
+    }
+    // Profiles may have numbers for names; then only the first cell tells, as in "x_mm, 1, 2".
+    if let Some(record) = first
+        && layout.sample.len() > 1
+        && layout.sample[0][0].is_nan()
+    {
+        before = [before[1], Some(record)];
+        layout.sample.remove(0);
+        layout.first_row_line = second_line;
     }
     layout.num_columns = usual_num_columns(&layout.sample);
     let names = |record: Record<'_>| {
@@ -459,7 +474,7 @@ fn row<'t>(
         _ => None,
     };
     Ok(RawPose {
-        label: text(places.label),
+        label: text(places.label).map(unescaped),
         point_in_sensor: point(cells, places, number_at)?,
         side,
         is_disabled,
@@ -468,6 +483,11 @@ fn row<'t>(
         may_continue: true,
         ..RawPose::default()
     })
+}
+
+/// A cell's text with quotation marks as they were before they were doubled.
+fn unescaped(text: &str) -> Cow<'_, str> {
+    if text.contains("\"\"") { text.replace("\"\"", "\"").into() } else { text.into() }
 }
 
 /// The reduced point; none where all its cells are empty. A point of the laser plane has no column for y.

@@ -56,16 +56,6 @@ fn split_line(text: &str) -> (&str, &str) {
     }
 }
 
-/// Line and column, both from 1, of a byte of a text.
-pub(super) fn line_and_column(text: &str, byte: usize) -> (usize, usize) {
-    let before = &text[..byte.min(text.len())];
-    let mut place = (1, 1);
-    for (number, line) in lines(before) {
-        place = (number, line.chars().count() + 1);
-    }
-    if before.ends_with(['\n', '\r']) { (place.0 + 1, 1) } else { place }
-}
-
 /// A row of a table: a line, or several where a quoted cell runs over its end.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Record<'t> {
@@ -314,8 +304,6 @@ mod tests {
             .take(3)
             .collect();
         assert_eq!(found, [(1, "\"x\n[mm]\",y"), (3, "1,2"), (4, "\"3,4")]);
-        assert_eq!(line_and_column("ab\r\ncd", 5), (2, 2));
-        assert_eq!(line_and_column("ab\n", 3), (2, 1));
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! Universal Robots: poses `p[x, y, z, rx, ry, rz]` wherever they stand, in scripts, lists and logs.
 
+use std::borrow::Cow;
+
 use crate::geometry::PoseNotation;
 use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
 use crate::geometry::{Tcp, Transform};
@@ -103,7 +105,10 @@ pub(super) fn read(
         };
         let label = label(&text[..at]);
         show(preview, place.0, label.unwrap_or_default(), &numbers);
-        gathered.take(&source.name, &RawPose { at: place, label, numbers: &numbers, ..RawPose::default() });
+        gathered.take(
+            &source.name,
+            &RawPose { at: place, label: label.map(Cow::Borrowed), numbers: &numbers, ..RawPose::default() },
+        );
     }
     Ok(())
 }
