@@ -76,7 +76,7 @@ pub fn list<R>(
 
 /// A text field named `name`.
 pub fn text_field(ui: &mut Ui, name: &str, hint: &str, text: &mut String, width: f32) -> egui::Response {
-    let field = TextEdit::singleline(text).hint_text(hint).margin(vec2(8.0, 5.0)).desired_width(width - 16.0);
+    let field = TextEdit::singleline(text).hint_text(hint).margin(vec2(8.0, 5.0)).desired_width(width);
     let response = ui.add(field);
     let text = text.clone();
     response.widget_info(|| {
