@@ -5,7 +5,7 @@ use egui::{Label, ScrollArea, Ui};
 use crate::app::ImportDraft;
 use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
 use crate::geometry::{PoseConvention, PoseNotation};
-use crate::session::import::{ImportOptions, Imported, Kind, Separator};
+use crate::session::import::{ImportError, ImportOptions, Imported, Kind, Separator};
 use crate::text::import as words;
 use crate::ui::theme;
 
@@ -41,6 +41,10 @@ pub fn show(ui: &mut Ui, draft: &ImportDraft, typed: &mut Typed) -> Option<Impor
         changed = Some(options);
     };
     text(ui, imported, current, &mut set);
+    let is_unknown = matches!(draft.outcome, Some(Err(ImportError::NotRecognised { .. })));
+    if is_unknown && draft.options.kind.is_none() {
+        return changed;
+    }
     if imported.is_none_or(model::may_have_poses) {
         poses(ui, current, typed, &mut set);
     }
