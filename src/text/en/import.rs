@@ -363,7 +363,7 @@ pub fn suggested_name(sources: &[Source]) -> String {
 pub fn outcome(imported: &Imported) -> String {
     let readings = || imported.stations.iter().flat_map(|station| &station.captures).map(|capture| &capture.reading);
     // A pose without a profile has an empty one.
-    let is_profile = |reading: &&Reading| matches!(reading, Reading::Profile(profile) if profile.len() > 0);
+    let is_profile = |reading: &&Reading| matches!(reading, Reading::Profile(profile) if !profile.is_empty());
     let num_profiles = readings().filter(is_profile).count();
     let num_points = readings().filter(|reading| matches!(reading, Reading::Point(_))).count();
     let with = match (num_profiles, num_points) {
