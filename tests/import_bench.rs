@@ -8,7 +8,7 @@ use std::sync::mpsc::{Receiver, sync_channel};
 use handeye::app::{Command, ImportDraft, ImportInto, NoticeKind, Workbench};
 use handeye::calibrate::Method;
 use handeye::session::import::{ImportError, ImportOptions, Imported, Kind, Separator};
-use handeye::session::{self, Session, Target};
+use handeye::session::{self, Reading, Session, Target};
 
 struct Bench {
     workbench: Workbench,
@@ -219,4 +219,50 @@ fn sessions_are_opened_and_everything_else_is_previewed() {
     }
     let of_a_folder = vec![folder.path().to_owned()];
     assert_eq!(Command::to_read(of_a_folder.clone()), Command::Import(of_a_folder));
+}
+
+fn valid_points(reading: &Reading) -> Vec<(f64, f64)> {
+    match reading {
+        Reading::Profile(profile) => profile.valid_points().map(|(_, x, z)| (x, z)).collect(),
+        Reading::Point(_) => Vec::new(),
+    }
+}
+
+#[test]
+fn exported_poses_and_profiles_come_back_as_the_same_stations() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut bench = Bench::new();
+    bench
+        .workbench
+        .open_session(session::parse(sample("near-largest-arc.json").json.as_bytes(), "s").expect("valid"), None);
+    bench.settle();
+    let before = bench.session().clone();
+    bench.apply(Command::ExportPoses(folder.path().join("poses.csv")));
+    bench.apply(Command::ExportProfiles(folder.path().join("profiles")));
+    let done = bench.workbench.notices().iter().filter(|notice| notice.kind == NoticeKind::Done).count();
+    assert_eq!((done, bench.workbench.notices().len()), (2, 2), "{:?}", bench.workbench.notices());
+    bench.apply(Command::Import(vec![folder.path().to_owned()]));
+    bench.apply(new_session("again"));
+    for (was, is) in before.stations.iter().zip(&bench.session().stations) {
+        assert_eq!((&was.label, was.side, was.enabled), (&is.label, is.side, is.enabled));
+        let (was, is) = (&was.captures[0], &is.captures[0]);
+        // Angles are written with all their digits; what is lost is the rounding of a turn there and back.
+        assert!((was.base_from_flange.translation_mm() - is.base_from_flange.translation_mm()).norm() < 1e-9);
+        assert!(was.base_from_flange.rotation().angle_to(&is.base_from_flange.rotation()) < 1e-12);
+        assert_eq!(valid_points(&was.reading), valid_points(&is.reading));
+    }
+    assert_eq!(bench.session().stations.len(), before.stations.len());
+}
+
+#[test]
+fn what_cannot_be_exported_is_told() {
+    let mut bench = Bench::new();
+    bench
+        .workbench
+        .open_session(session::parse(sample("near-largest-arc.json").json.as_bytes(), "s").expect("valid"), None);
+    bench.settle();
+    bench.apply(Command::ExportPoses(PathBuf::from("/nowhere/at-all/poses.csv")));
+    let notice = bench.workbench.notices().last().expect("told");
+    assert_eq!(notice.kind, NoticeKind::Error);
+    assert!(notice.message.contains("/nowhere/at-all/poses.csv"), "{}", notice.message);
 }

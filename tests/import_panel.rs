@@ -4,13 +4,14 @@
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, sync_channel};
 
+use egui::accesskit::Role;
 use egui::{Event, Key};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use handeye::app::{Command, ImportInto, Workbench};
 use handeye::geometry::PoseNotation;
 use handeye::geometry::notation::LengthUnit;
-use handeye::session::import::{ImportOptions, Imported, Kind, Role};
+use handeye::session::import::{self, ImportOptions, Imported, Kind};
 use handeye::session::{self, Target, samples};
 use handeye::text::{import as words, shell as shell_words, start as start_words};
 use handeye::ui::dialogs::SavePath;
@@ -102,6 +103,12 @@ fn click<T>(harness: &mut Harness<'static, T>, name: &str) {
     harness.run_steps(3);
 }
 
+/// Clicks an entry of the list that is open.
+fn pick<T>(harness: &mut Harness<'static, T>, entry: &str) {
+    harness.get_by_role_and_label(Role::Button, entry).click();
+    harness.run_steps(3);
+}
+
 fn type_into<T>(harness: &mut Harness<'static, T>, name: &str, text: &str) {
     harness.get_by_label(name).focus();
     harness.run_steps(2);
@@ -113,13 +120,10 @@ fn type_into<T>(harness: &mut Harness<'static, T>, name: &str, text: &str) {
 fn a_role_chosen_over_a_column_yields_exactly_the_options_with_it() {
     let mut harness = Bench::with(TABLE).harness();
     let roles = harness.state().imported().preview.roles.clone();
-    assert_eq!(roles[1..3], [Role::Position(0), Role::Position(1)]);
+    assert_eq!(roles[1..3], [import::Role::Position(0), import::Role::Position(1)]);
     click(&mut harness, &words::column_role(2));
-    let y = words::role(Role::Position(1), &PoseNotation::default(), LengthUnit::Millimetres);
-    // The last of that name is the list's entry; the others are over their columns.
-    let entry = harness.get_all_by_label(&y).last().expect("an entry");
-    entry.click();
-    harness.run_steps(3);
+    let y = words::role(import::Role::Position(1), &PoseNotation::default(), LengthUnit::Millimetres);
+    pick(&mut harness, &y);
     let mut swapped = roles;
     swapped.swap(1, 2);
     let options = ImportOptions { roles: Some(swapped), ..ImportOptions::default() };
@@ -130,7 +134,7 @@ fn a_role_chosen_over_a_column_yields_exactly_the_options_with_it() {
 fn a_unit_chosen_at_the_left_changes_that_and_nothing_else() {
     let mut harness = Bench::with(TABLE).harness();
     let notation = harness.state().imported().options.notation.expect("recognised");
-    click(&mut harness, words::POSITION_UNIT);
+    click(&mut harness, &words::setting(words::POSITION_UNIT));
     click(&mut harness, words::METRES);
     let notation = PoseNotation { length_unit: LengthUnit::Metres, ..notation };
     let options = ImportOptions { notation: Some(notation), ..ImportOptions::default() };
@@ -175,7 +179,7 @@ fn a_new_session_needs_a_radius_and_then_is_the_next_step() {
     let mut harness = Bench::with(TABLE).harness();
     click(&mut harness, words::NEW_SESSION);
     assert!(harness.state().commands.is_empty(), "without a radius there is no ball");
-    type_into(&mut harness, words::RADIUS, "12,5");
+    type_into(&mut harness, words::RADIUS_FIELD, "12,5");
     click(&mut harness, words::NEW_SESSION);
     let into = ImportInto::NewSession { name: "Pasted poses".to_owned(), target: Target::ball(12.5) };
     assert_eq!(harness.state().commands, [Command::FinishImport(into)]);
@@ -198,11 +202,11 @@ fn stations_can_be_added_only_where_a_session_is_open() {
 #[test]
 fn escape_closes_a_list_first_and_then_the_preview() {
     let mut harness = Bench::with(TABLE).harness();
-    click(&mut harness, words::ORIENTATION);
+    click(&mut harness, &words::setting(words::ORIENTATION));
     harness.key_press(Key::Escape);
     harness.run_steps(3);
     assert!(harness.state().commands.is_empty());
-    harness.get_by_label(words::RADIUS).focus();
+    harness.get_by_label(words::RADIUS_FIELD).focus();
     harness.run_steps(2);
     harness.key_press(Key::Escape);
     harness.run_steps(3);
@@ -214,7 +218,7 @@ fn escape_closes_a_list_first_and_then_the_preview() {
 
 #[test]
 fn what_was_set_for_a_table_is_applied_to_the_next_with_the_same_columns() {
-    let mut bench = Bench::with(TABLE);
+    let bench = Bench::with(TABLE);
     let notation = bench.imported().options.notation.expect("recognised");
     let options = ImportOptions {
         notation: Some(PoseNotation { length_unit: LengthUnit::Metres, ..notation }),
@@ -223,7 +227,7 @@ fn what_was_set_for_a_table_is_applied_to_the_next_with_the_same_columns() {
     let mut harness = bench.harness();
     harness.state_mut().apply(Command::SetImportOptions(Box::new(options.clone())));
     harness.run_steps(3);
-    type_into(&mut harness, words::RADIUS, "15");
+    type_into(&mut harness, words::RADIUS_FIELD, "15");
     click(&mut harness, words::NEW_SESSION);
     harness.state_mut().commands.clear();
     let other = TABLE.replace("562.4", "1.25");
@@ -247,9 +251,8 @@ fn what_was_set_for_a_table_is_applied_to_the_next_with_the_same_columns() {
 fn what_is_not_recognised_says_what_can_be_read_and_lets_the_form_be_chosen() {
     let mut harness = Bench::with("dear colleague, see the poses attached").harness();
     harness.get_by_label(words::CHOOSE_FORM);
-    click(&mut harness, words::FORM);
-    harness.get_all_by_label(words::kind(Kind::UrScript)).last().expect("an entry").click();
-    harness.run_steps(3);
+    click(&mut harness, &words::setting(words::FORM));
+    pick(&mut harness, words::kind(Kind::UrScript));
     let options = ImportOptions { kind: Some(Kind::UrScript), ..ImportOptions::default() };
     assert_eq!(harness.state().commands, [Command::SetImportOptions(Box::new(options))]);
 }
@@ -297,7 +300,7 @@ fn a_printed_table_is_pasted_made_a_session_and_undone_changes_are_asked_for() {
     let mut harness = window();
     harness.event(Event::Paste(PRINTED.to_owned()));
     settle(&mut harness);
-    type_into(&mut harness, words::RADIUS, "30");
+    type_into(&mut harness, words::RADIUS_FIELD, "30");
     harness.get_by_label(words::NEW_SESSION).click();
     settle(&mut harness);
     let document = workbench(&harness).document().expect("made");
@@ -373,4 +376,17 @@ fn a_path_is_typed_for_every_purpose_where_there_is_no_dialog() {
         harness.run_steps(3);
         assert_eq!(harness.state().1.len(), 1, "{purpose:?}");
     }
+}
+
+#[test]
+fn columns_that_do_not_make_a_pose_leave_everything_to_be_set() {
+    let mut bench = Bench::with(TABLE);
+    let roles = vec![import::Role::Ignore; 10];
+    bench.apply(Command::SetImportOptions(Box::new(ImportOptions { roles: Some(roles), ..ImportOptions::default() })));
+    let mut harness = bench.harness();
+    harness.get_by_label(words::NOTHING);
+    harness.get_by_label(&words::column_role(1));
+    harness.get_by_label(&words::setting(words::ORIENTATION));
+    click(&mut harness, words::RESET);
+    assert_eq!(harness.state().commands, [Command::SetImportOptions(Box::default())]);
 }

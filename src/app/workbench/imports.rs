@@ -169,8 +169,4 @@ impl Workbench {
     pub(super) fn cancel_import(&mut self) {
         self.imports.end();
     }
-
-    pub(super) fn export_poses(&mut self, _path: PathBuf) {}
-
-    pub(super) fn export_profiles(&mut self, _folder: PathBuf) {}
 }

@@ -1,6 +1,7 @@
 //! Document, results, jobs and notices, changed only by commands and finished jobs.
 
 mod edits;
+mod exports;
 mod files;
 mod imports;
 mod keeping;
@@ -21,6 +22,7 @@ use super::recovery::{Recoverable, Recovery};
 use super::study::Study;
 use super::{Command, Document};
 
+use self::exports::Exported;
 use self::files::{Loaded, Look, Save, SaveOutcome};
 pub use self::imports::ImportDraft;
 use self::imports::Imports;
@@ -91,6 +93,7 @@ pub struct Workbench {
     readings: Study<Vec<ReadingFit>>,
     bootstrap: Study<Bootstrap>,
     imports: Imports,
+    exporting: Slot<Exported>,
 }
 
 impl Workbench {
@@ -119,6 +122,7 @@ impl Workbench {
             readings: Study::default(),
             bootstrap: Study::default(),
             imports: Imports::default(),
+            exporting: Slot::default(),
         }
     }
 
@@ -224,6 +228,7 @@ impl Workbench {
             || self.readings.is_running()
             || self.bootstrap.is_running()
             || self.imports.is_busy()
+            || self.exporting.is_running()
     }
 
     /// Carries out one command.
@@ -311,7 +316,9 @@ impl Workbench {
                 self.notify_broken(what, &ended);
             }
         }
-        self.poll_imports() || changed
+        let imported = self.poll_imports();
+        let exported = self.poll_exports();
+        changed || imported || exported
     }
 
     fn notify(&mut self, kind: NoticeKind, message: String) {

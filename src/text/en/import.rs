@@ -164,6 +164,12 @@ pub const NAME: &str = "name";
 pub const TARGET: &str = "target";
 /// Field.
 pub const RADIUS: &str = "radius";
+/// Name of the field.
+pub const NAME_FIELD: &str = "Name of the session";
+/// Name of the list.
+pub const TARGET_FIELD: &str = "Target of the session";
+/// Name of the field.
+pub const RADIUS_FIELD: &str = "Radius of the ball in mm";
 /// Unit of the radius.
 pub const MM: &str = "mm";
 /// Target.
@@ -291,6 +297,12 @@ pub fn orientation_meaning(notation: &PoseNotation) -> String {
     }
 }
 
+/// Name of the control in a row of settings.
+#[must_use]
+pub fn setting(label: &str) -> String {
+    format!("Setting: {label}")
+}
+
 /// Name of the list over a column of the preview.
 #[must_use]
 pub fn column_role(number: usize) -> String {
@@ -351,7 +363,7 @@ pub fn suggested_name(sources: &[Source]) -> String {
 pub fn outcome(imported: &Imported) -> String {
     let readings = || imported.stations.iter().flat_map(|station| &station.captures).map(|capture| &capture.reading);
     // A pose without a profile has an empty one.
-    let is_profile = |reading: &&Reading| matches!(reading, Reading::Profile(profile) if profile.len() > 0);
+    let is_profile = |reading: &&Reading| matches!(reading, Reading::Profile(profile) if !profile.is_empty());
     let num_profiles = readings().filter(is_profile).count();
     let num_points = readings().filter(|reading| matches!(reading, Reading::Point(_))).count();
     let with = match (num_profiles, num_points) {
@@ -391,11 +403,11 @@ pub fn more_rows(num_shown: usize, num_rows: usize) -> String {
 pub fn note(note: &Note) -> String {
     match note {
         Note::UserFrameTakenAsBase { frame, num_poses } => format!(
-            "{} in {frame}, which the file does not define: taken as the robot's base. Give the frame at the left if it is not",
+            "{} in frame {frame}, which the file does not define: give it at the left, else it counts as the robot's base",
             poses_are(*num_poses)
         ),
         Note::ToolTakenAsFlange { tool, num_poses } => format!(
-            "{} of {tool}, which the file does not define: taken as the flange. Give the tool point at the left if it is not",
+            "{} of tool {tool}, which the file does not define: give its point at the left, else it counts as the flange",
             poses_are(*num_poses)
         ),
         Note::PosesWithoutReading { num_poses } => format!(

@@ -3,6 +3,7 @@
 use egui::{Align, ComboBox, Label, Layout, Role, Sense, TextEdit, Ui, UiBuilder, WidgetInfo, vec2};
 
 use crate::session::table::number::parse_number;
+use crate::text::import as words;
 use crate::ui::{theme, widgets};
 
 /// Width of the labels, points.
@@ -19,6 +20,17 @@ pub fn row<R>(ui: &mut Ui, label: &str, control: impl FnOnce(&mut Ui) -> R) -> R
     let split = rect.left() + LABEL_WIDTH;
     ui.new_child(child(rect.with_max_x(split))).add(Label::new(theme::dim(ui, label)).truncate());
     control(&mut ui.new_child(child(rect.with_min_x(split))))
+}
+
+/// A row with a list of which one entry is chosen; answers another one that was picked.
+pub fn row_choice<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    label: &str,
+    current: T,
+    choices: &[T],
+    text: impl Fn(T) -> String,
+) -> Option<T> {
+    row(ui, label, |ui| choice(ui, &words::setting(label), current, choices, text))
 }
 
 /// A list of which one entry is chosen; answers another one that was picked.
@@ -64,7 +76,7 @@ pub fn list<R>(
 
 /// A text field named `name`.
 pub fn text_field(ui: &mut Ui, name: &str, hint: &str, text: &mut String, width: f32) -> egui::Response {
-    let field = TextEdit::singleline(text).hint_text(hint).margin(vec2(8.0, 5.0)).desired_width(width - 16.0);
+    let field = TextEdit::singleline(text).hint_text(hint).margin(vec2(8.0, 5.0)).desired_width(width);
     let response = ui.add(field);
     let text = text.clone();
     response.widget_info(|| {

@@ -47,6 +47,12 @@ pub fn has_free_roles(imported: &Imported) -> bool {
     imported.options.kind.is_none_or(|kind| kind == Kind::PoseTable)
 }
 
+/// Whether how poses are written is a question: also where none could be read the way it is set now.
+#[must_use]
+pub fn may_have_poses(imported: &Imported) -> bool {
+    imported.parts.iter().any(|part| !matches!(part.kind, Kind::Profile | Kind::ProfileColumns))
+}
+
 /// Whether profiles were read.
 #[must_use]
 pub fn has_profiles(imported: &Imported) -> bool {

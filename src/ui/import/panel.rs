@@ -183,13 +183,13 @@ fn heading(
     ui.add_space(8.0);
     let palette = theme::palette(ui);
     match &draft.outcome {
-        Some(Ok(imported)) => {
+        Some(Ok(imported)) if !imported.stations.is_empty() => {
             let (mark, color) = if imported.num_problems == 0 { ("✔", palette.good) } else { ("!", palette.warn) };
             ui.label(egui::RichText::new(mark).color(color));
             ui.label(words::outcome(imported));
         }
         Some(Err(ImportError::Cancelled)) | None => {}
-        Some(Err(_)) => {
+        Some(_) => {
             ui.label(egui::RichText::new("✖").color(palette.bad));
             ui.label(words::NOTHING);
         }
@@ -289,7 +289,7 @@ fn footer(
 fn new_session_fields(ui: &mut Ui, state: &mut ImportState) {
     ui.label(theme::dim(ui, words::NAME));
     let width = if ui.available_width() < NARROW_WIDTH { 136.0 } else { 240.0 };
-    fields::text_field(ui, words::NAME, "", &mut state.name, width);
+    fields::text_field(ui, words::NAME_FIELD, "", &mut state.name, width);
     ui.add_space(8.0);
     ui.label(theme::dim(ui, words::TARGET));
     let named = |target| {
@@ -302,14 +302,14 @@ fn new_session_fields(ui: &mut Ui, state: &mut ImportState) {
     };
     ui.scope(|ui| {
         ui.set_max_width(128.0);
-        if let Some(target) = fields::choice(ui, words::TARGET, state.target, &TARGETS, named) {
+        if let Some(target) = fields::choice(ui, words::TARGET_FIELD, state.target, &TARGETS, named) {
             state.target = target;
         }
     });
     if state.target == TargetKind::Ball {
         ui.add_space(8.0);
         ui.label(theme::dim(ui, words::RADIUS));
-        fields::text_field(ui, words::RADIUS, "", &mut state.radius, 64.0);
+        fields::text_field(ui, words::RADIUS_FIELD, "", &mut state.radius, 64.0);
         ui.label(theme::dim(ui, words::MM));
         if parse_number(&state.radius).is_err() {
             let needed = egui::RichText::new(words::NEEDED).color(theme::palette(ui).warn);

@@ -31,6 +31,8 @@ const LINE_WIDTH: f32 = 56.0;
 const MAX_REMARKS_PART: f32 = 0.35;
 /// Height of a line of it, points.
 const REMARK_HEIGHT: f32 = 22.0;
+/// Height of a line of text in a list, points.
+const LINE_HEIGHT: f32 = 16.0;
 
 /// Draws what was read; answers the options with another meaning of a column.
 pub fn show(ui: &mut Ui, draft: &ImportDraft, imported: &Imported) -> Option<ImportOptions> {
@@ -238,13 +240,16 @@ pub fn show_error(ui: &mut Ui, draft: &ImportDraft, error: &ImportError) {
         if !is_empty || !is_pasted {
             ui.label(words::CHOOSE_FORM);
         }
-        egui::Grid::new("import forms").num_columns(2).spacing([16.0, 4.0]).show(ui, |ui| {
-            for (kind, description) in words::FORMS {
-                ui.label(words::kind(kind));
-                ui.add(Label::new(theme::dim(ui, description)));
-                ui.end_row();
-            }
-        });
+        egui::Grid::new("import forms").num_columns(2).min_row_height(LINE_HEIGHT).spacing([16.0, 4.0]).show(
+            ui,
+            |ui| {
+                for (kind, description) in words::FORMS {
+                    ui.label(words::kind(kind));
+                    ui.add(Label::new(theme::dim(ui, description)));
+                    ui.end_row();
+                }
+            },
+        );
         if is_pasted && !is_empty {
             ui.add_space(4.0);
             ui.label(theme::dim(ui, words::PASTE_AGAIN));
@@ -261,12 +266,15 @@ fn raw_text(ui: &mut Ui, lines: &[String]) {
     ui.label(theme::strong(words::BEGINNING));
     ui.add_space(4.0);
     ScrollArea::horizontal().id_salt("import raw text").show(ui, |ui| {
-        egui::Grid::new("import raw lines").num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
-            for (idx, line) in lines.iter().enumerate() {
-                ui.label(theme::dim(ui, (idx + 1).to_string()).font(theme::number_font()));
-                ui.add(Label::new(RichText::new(line).family(egui::FontFamily::Monospace).small()).extend());
-                ui.end_row();
-            }
-        });
+        egui::Grid::new("import raw lines").num_columns(2).min_row_height(LINE_HEIGHT).spacing([12.0, 2.0]).show(
+            ui,
+            |ui| {
+                for (idx, line) in lines.iter().enumerate() {
+                    ui.label(theme::dim(ui, (idx + 1).to_string()).font(theme::number_font()));
+                    ui.add(Label::new(RichText::new(line).family(egui::FontFamily::Monospace).small()).extend());
+                    ui.end_row();
+                }
+            },
+        );
     });
 }

@@ -5,7 +5,7 @@ use egui::{Label, ScrollArea, Ui};
 use crate::app::ImportDraft;
 use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
 use crate::geometry::{PoseConvention, PoseNotation};
-use crate::session::import::{ImportOptions, Imported, Kind, Separator};
+use crate::session::import::{ImportError, ImportOptions, Imported, Kind, Separator};
 use crate::text::import as words;
 use crate::ui::theme;
 
@@ -41,7 +41,11 @@ pub fn show(ui: &mut Ui, draft: &ImportDraft, typed: &mut Typed) -> Option<Impor
         changed = Some(options);
     };
     text(ui, imported, current, &mut set);
-    if imported.is_none_or(|imported| imported.parts.iter().any(|part| part.num_poses > 0)) {
+    let is_unknown = matches!(draft.outcome, Some(Err(ImportError::NotRecognised { .. })));
+    if is_unknown && draft.options.kind.is_none() {
+        return changed;
+    }
+    if imported.is_none_or(model::may_have_poses) {
         poses(ui, current, typed, &mut set);
     }
     if imported.is_none_or(model::has_profiles) {
@@ -73,7 +77,7 @@ fn text(ui: &mut Ui, imported: Option<&Imported>, current: &ImportOptions, set: 
     let kinds: Vec<Option<Kind>> = words::FORMS.iter().map(|(kind, _)| Some(*kind)).collect();
     let kind = current.kind.or_else(|| imported.and_then(|imported| imported.parts.first().map(|part| part.kind)));
     let named = |kind: Option<Kind>| kind.map_or("not recognised", words::kind).to_owned();
-    if let Some(kind) = fields::row(ui, words::FORM, |ui| fields::choice(ui, words::FORM, kind, &kinds, named)) {
+    if let Some(kind) = fields::row_choice(ui, words::FORM, kind, &kinds, named) {
         // What was said of columns was said of another form.
         set(&|options| {
             *options = ImportOptions { kind, notation: options.notation, ..ImportOptions::default() };
@@ -84,21 +88,19 @@ fn text(ui: &mut Ui, imported: Option<&Imported>, current: &ImportOptions, set: 
     }
     let separators = [Separator::Comma, Separator::Semicolon, Separator::Tab, Separator::Blanks].map(Some);
     let named = |separator: Option<Separator>| separator.map_or(String::new(), |s| words::separator(s).to_owned());
-    let picked = fields::row(ui, words::SEPARATOR, |ui| {
-        fields::choice(ui, words::SEPARATOR, current.separator, &separators, named)
-    });
+    let picked = fields::row_choice(ui, words::SEPARATOR, current.separator, &separators, named);
     if let Some(separator) = picked {
         set(&|options| (options.separator, options.roles) = (separator, None));
     }
     let named = |comma: bool| if comma { words::DECIMAL_COMMA } else { words::DECIMAL_POINT }.to_owned();
     let comma = current.decimal_comma.unwrap_or(false);
-    let picked = fields::row(ui, words::DECIMAL, |ui| fields::choice(ui, words::DECIMAL, comma, &[false, true], named));
+    let picked = fields::row_choice(ui, words::DECIMAL, comma, &[false, true], named);
     if let Some(comma) = picked {
         set(&|options| options.decimal_comma = Some(comma));
     }
     let named = |header: bool| if header { words::HEADER_NAMES } else { words::HEADER_POSE }.to_owned();
     let header = current.has_header.unwrap_or(false);
-    let picked = fields::row(ui, words::HEADER, |ui| fields::choice(ui, words::HEADER, header, &[true, false], named));
+    let picked = fields::row_choice(ui, words::HEADER, header, &[true, false], named);
     if let Some(header) = picked {
         set(&|options| options.has_header = Some(header));
     }
@@ -117,9 +119,7 @@ fn poses(ui: &mut Ui, current: &ImportOptions, typed: &mut Typed, set: Set<'_>) 
         });
     };
     let unit = |unit| words::length_unit(unit).to_owned();
-    let picked = fields::row(ui, words::POSITION_UNIT, |ui| {
-        fields::choice(ui, words::POSITION_UNIT, notation.length_unit, &LENGTH_UNITS, unit)
-    });
+    let picked = fields::row_choice(ui, words::POSITION_UNIT, notation.length_unit, &LENGTH_UNITS, unit);
     if let Some(length_unit) = picked {
         set_notation(PoseNotation { length_unit, ..notation });
     }
@@ -133,9 +133,7 @@ fn poses(ui: &mut Ui, current: &ImportOptions, typed: &mut Typed, set: Set<'_>) 
             AngleUnit::Radians => words::RADIANS.to_owned(),
         };
         let units = [AngleUnit::Degrees, AngleUnit::Radians];
-        let picked = fields::row(ui, words::ANGLE_UNIT, |ui| {
-            fields::choice(ui, words::ANGLE_UNIT, notation.angle_unit, &units, named)
-        });
+        let picked = fields::row_choice(ui, words::ANGLE_UNIT, notation.angle_unit, &units, named);
         if let Some(angle_unit) = picked {
             set_notation(PoseNotation { angle_unit, ..notation });
         }
@@ -153,7 +151,7 @@ fn poses(ui: &mut Ui, current: &ImportOptions, typed: &mut Typed, set: Set<'_>) 
 fn orientation(ui: &mut Ui, notation: &PoseNotation) -> Option<PoseNotation> {
     let text = words::orientation_form(notation.orientation, notation.convention.label);
     let width = ui.available_width();
-    fields::list(ui, words::ORIENTATION, text, width, |ui| {
+    fields::list(ui, &words::setting(words::ORIENTATION), text, width, |ui| {
         let mut picked = None;
         let mut entry = |ui: &mut Ui, choice: PoseNotation| {
             let is_current = choice == *notation;
@@ -162,14 +160,14 @@ fn orientation(ui: &mut Ui, notation: &PoseNotation) -> Option<PoseNotation> {
                 picked = Some(choice);
             }
         };
-        ui.label(theme::dim(ui, words::MAKERS).small());
-        for convention in PoseConvention::all() {
-            entry(ui, PoseNotation { convention, orientation: OrientationForm::Angles, ..*notation });
-        }
-        ui.separator();
         ui.label(theme::dim(ui, words::QUATERNIONS).small());
         for orientation in [OrientationForm::QuaternionWxyz, OrientationForm::QuaternionXyzw] {
             entry(ui, PoseNotation { orientation, ..*notation });
+        }
+        ui.separator();
+        ui.label(theme::dim(ui, words::MAKERS).small());
+        for convention in PoseConvention::all() {
+            entry(ui, PoseNotation { convention, orientation: OrientationForm::Angles, ..*notation });
         }
         picked
     })
@@ -179,8 +177,7 @@ fn tool_point(ui: &mut Ui, notation: &PoseNotation, typed: &mut Typed) -> Option
     let is_tcp = notation.flange_from_tcp.is_some();
     let named = |is_tcp: bool| if is_tcp { words::TOOL_POINT } else { words::FLANGE }.to_owned();
     let convention = notation.convention;
-    let picked =
-        fields::row(ui, words::POSE_OF, |ui| fields::choice(ui, words::POSE_OF, is_tcp, &[false, true], named));
+    let picked = fields::row_choice(ui, words::POSE_OF, is_tcp, &[false, true], named);
     let numbers = match (picked, &notation.flange_from_tcp) {
         (Some(false), _) => return Some(PoseNotation { flange_from_tcp: None, ..*notation }),
         (Some(true), _) => [0.0; 6],
@@ -199,8 +196,7 @@ fn tool_point(ui: &mut Ui, notation: &PoseNotation, typed: &mut Typed) -> Option
 fn user_frame(ui: &mut Ui, current: &ImportOptions, notation: &PoseNotation, typed: &mut Typed, set: Set<'_>) {
     let named = |is_user: bool| if is_user { words::USER_FRAME } else { words::ROBOT_BASE }.to_owned();
     let is_user = current.base_from_user_frame.is_some();
-    let picked =
-        fields::row(ui, words::POSE_IN, |ui| fields::choice(ui, words::POSE_IN, is_user, &[false, true], named));
+    let picked = fields::row_choice(ui, words::POSE_IN, is_user, &[false, true], named);
     if let Some(is_user) = picked {
         set(&|options| options.base_from_user_frame = is_user.then_some([0.0; 6]));
     }
@@ -225,8 +221,7 @@ fn profiles(ui: &mut Ui, current: &ImportOptions, set: Set<'_>) {
     fields::heading(ui, words::PROFILES);
     let unit = current.profile_length_unit.unwrap_or_default();
     let named = |unit| words::length_unit(unit).to_owned();
-    let picked =
-        fields::row(ui, words::PROFILE_UNIT, |ui| fields::choice(ui, words::PROFILE_UNIT, unit, &LENGTH_UNITS, named));
+    let picked = fields::row_choice(ui, words::PROFILE_UNIT, unit, &LENGTH_UNITS, named);
     if let Some(unit) = picked {
         set(&|options| options.profile_length_unit = Some(unit));
     }
