@@ -239,7 +239,8 @@ impl<Tell: Fn(News)> Keeper<Tell> {
     /// How long the newest state may wait, if there is one to be written. The first edit is written at once.
     fn time_to_write(&self, now: Instant) -> Option<Duration> {
         self.waiting.as_ref()?;
-        let next = self.last_attempt.map_or(now, |last| last + self.settings.interval);
+        let pause = if self.has_failed { self.settings.interval.max(INTERVAL) } else { self.settings.interval };
+        let next = self.last_attempt.map_or(now, |last| last + pause);
         Some(next.saturating_duration_since(now))
     }
 
