@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
+use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
@@ -76,9 +77,9 @@ fn window_with_file(folder: &Path) -> (Handeye, PathBuf) {
     (window_with(Start { file: Some(path.clone()), ..Start::default() }), path)
 }
 
-/// Puts the cursor into a field behind its text.
+/// Puts the cursor into a field behind its text. Its label stands beside it under the same name.
 fn enter(harness: &mut Handeye, name: &str) {
-    harness.get_by_label(name).focus();
+    harness.get_by_role_and_label(Role::TextInput, name).focus();
     harness.run_steps(2);
     harness.key_press(Key::End);
     harness.run_steps(2);
@@ -86,7 +87,7 @@ fn enter(harness: &mut Handeye, name: &str) {
 
 fn type_text(harness: &mut Handeye, name: &str, text: &str) {
     for letter in text.chars() {
-        harness.get_by_label(name).type_text(&letter.to_string());
+        harness.get_by_role_and_label(Role::TextInput, name).type_text(&letter.to_string());
         harness.run_steps(2);
     }
 }
@@ -207,7 +208,8 @@ fn noise_that_is_not_stated_is_an_empty_field_and_the_mount_is_chosen() {
     harness.key_press(Key::Enter);
     settle(&mut harness);
     assert_eq!(document(&harness).session.robot.position_std_mm, None);
-    click(&mut harness, start_words::MOUNT);
+    harness.get_by_role_and_label(Role::ComboBox, start_words::MOUNT).click();
+    settle(&mut harness);
     click(&mut harness, start_words::mount(Mount::Fixed));
     assert_eq!(document(&harness).session.mount, Mount::Fixed);
 }
