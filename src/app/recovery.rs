@@ -100,7 +100,7 @@ pub(super) enum News {
     /// All that may be recovered now.
     Found(Vec<Recoverable>),
     /// A copy was read.
-    Read { file: PathBuf, outcome: Result<(Session, Origin), SessionError> },
+    Read { file: PathBuf, outcome: Box<Result<(Session, Origin), SessionError>> },
     /// A copy was written.
     Kept,
     /// A copy could not be written; told once until one could be again.
@@ -252,7 +252,7 @@ impl<Tell: Fn(News)> Keeper<Tell> {
             }
             Order::Forget => self.forget(),
             Order::Read(file) => {
-                let outcome = read(&file);
+                let outcome = Box::new(read(&file));
                 (self.tell)(News::Read { file, outcome });
             }
             Order::Discard(file) => self.discard(&file),

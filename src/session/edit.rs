@@ -3,6 +3,7 @@
 //! An edit is applied to a copy; what could not be saved and opened again is refused, so the document is always valid.
 
 use std::collections::HashSet;
+use std::hash::BuildHasher;
 use std::path::Path;
 
 use nalgebra::UnitQuaternion;
@@ -353,15 +354,15 @@ fn check_station(station: &mut Station) -> Result<(), EditRefusal> {
 
 /// The label itself, or the first number behind it (or after it, if it is a number) that is free.
 #[must_use]
-pub fn free_label(wanted: &str, taken: &HashSet<String>) -> String {
+pub fn free_label<S: BuildHasher>(wanted: &str, taken: &HashSet<String, S>) -> String {
     if !taken.contains(wanted) {
         return wanted.to_owned();
     }
     if let Ok(number) = wanted.parse::<u32>() {
-        let next = (number..).map(|number| number.to_string()).find(|label| !taken.contains(label));
+        let next = (number..=u32::MAX).map(|number| number.to_string()).find(|label| !taken.contains(label));
         return next.unwrap_or_else(|| wanted.to_owned());
     }
-    (2_u32..).map(|number| format!("{wanted} ({number})")).find(|label| !taken.contains(label)).unwrap_or_default()
+    (2..=u32::MAX).map(|number| format!("{wanted} ({number})")).find(|label| !taken.contains(label)).unwrap_or_default()
 }
 
 /// What a paper printed is one row a station: with other stations it fits no more.

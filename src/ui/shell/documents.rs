@@ -212,12 +212,12 @@ impl Shell {
     /// only when something happens, so an idle window stays idle.
     pub(super) fn look_at_file(&mut self, ctx: &Context) {
         let (now, has_focus) = ctx.input(|input| (input.time, input.focused));
-        let has_come_back = has_focus && !std::mem::replace(&mut self.had_focus, has_focus);
+        let has_come_back = has_focus && !std::mem::replace(&mut self.watch.had_focus, has_focus);
         if has_come_back {
             self.look_again();
         }
-        if has_come_back || now - self.last_look > LOOK_SECONDS {
-            self.last_look = now;
+        if has_come_back || now - self.watch.last_look > LOOK_SECONDS {
+            self.watch.last_look = now;
             self.workbench.apply(Command::CheckFile);
         }
     }
