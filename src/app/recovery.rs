@@ -100,7 +100,7 @@ pub(super) enum News {
     /// All that may be recovered now.
     Found(Vec<Recoverable>),
     /// A copy was read.
-    Read { file: PathBuf, outcome: Result<(Session, Origin), SessionError> },
+    Read { file: PathBuf, outcome: Box<Result<(Session, Origin), SessionError>> },
     /// A copy was written.
     Kept,
     /// A copy could not be written; told once until one could be again.
@@ -239,7 +239,8 @@ impl<Tell: Fn(News)> Keeper<Tell> {
     /// How long the newest state may wait, if there is one to be written. The first edit is written at once.
     fn time_to_write(&self, now: Instant) -> Option<Duration> {
         self.waiting.as_ref()?;
-        let next = self.last_attempt.map_or(now, |last| last + self.settings.interval);
+        let pause = if self.has_failed { self.settings.interval.max(INTERVAL) } else { self.settings.interval };
+        let next = self.last_attempt.map_or(now, |last| last + pause);
         Some(next.saturating_duration_since(now))
     }
 
@@ -251,7 +252,7 @@ impl<Tell: Fn(News)> Keeper<Tell> {
             }
             Order::Forget => self.forget(),
             Order::Read(file) => {
-                let outcome = read(&file);
+                let outcome = Box::new(read(&file));
                 (self.tell)(News::Read { file, outcome });
             }
             Order::Discard(file) => self.discard(&file),

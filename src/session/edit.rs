@@ -3,7 +3,10 @@
 //! An edit is applied to a copy; what could not be saved and opened again is refused, so the document is always valid.
 
 use std::collections::HashSet;
+use std::hash::BuildHasher;
+use std::path::Path;
 
+use nalgebra::UnitQuaternion;
 use thiserror::Error;
 
 use crate::calibrate::{Mount, SideChoice};
@@ -158,6 +161,18 @@ pub enum EditRefusal {
     /// The target needs more than the stations say.
     #[error("found stations that do not say which edge they saw, needed p or q for each before the target is a plate")]
     EdgesMissing,
+    /// A station without a pose and a reading.
+    #[error("found station \"{label}\" without captures, needed a pose with what was measured there")]
+    NoCaptures {
+        /// The station.
+        label: String,
+    },
+    /// A camera's sequence that is no folder beside the session.
+    #[error("found the folder \"{found}\", needed that of a sequence, relative to the session's file")]
+    NotASequence {
+        /// The folder.
+        found: String,
+    },
     /// An RGB-D session has a sequence in place of stations.
     #[error("found a session of an RGB-D camera, which has no stations")]
     NoStationsHere,
@@ -215,28 +230,24 @@ fn set_cells(session: &mut Session, cells: &[(Place, CellValue)]) -> Result<(), 
         match value {
             CellValue::Used(used) => station_at(session, *place)?.enabled = *used,
             CellValue::Label(label) => {
-                if label.trim().is_empty() || label.chars().any(char::is_control) {
-                    return Err(EditRefusal::LabelUnusable);
-                }
+                check_label(label)?;
                 station_at(session, *place)?.label.clone_from(label);
             }
             CellValue::Side(side) => station_at(session, *place)?.side = *side,
             CellValue::Edge(edge) => station_at(session, *place)?.edge = Some(*edge),
             CellValue::Pose(base_from_flange, written_angles) => {
-                all_within(&base_from_flange.translation_mm(), &limits::POSITION_MM)?;
-                let capture = capture_at(session, *place)?;
-                capture.base_from_flange = *base_from_flange;
-                capture.written_angles = *written_angles;
+                set_pose(capture_at(session, *place)?, *base_from_flange, *written_angles)?;
             }
             CellValue::Step(step_mm) => {
                 step_mm.map_or(Ok(()), |step_mm| within(step_mm, &limits::STEP_MM))?;
                 capture_at(session, *place)?.step_mm = *step_mm;
             }
             CellValue::Reading(reading) => {
-                if let Reading::Point(point_in_sensor) = reading {
-                    all_within(point_in_sensor, &limits::POINT_MM)?;
-                }
-                capture_at(session, *place)?.reading = reading.clone();
+                check_reading(reading)?;
+                let capture = capture_at(session, *place)?;
+                capture.reading = reading.clone();
+                // What else the file said of the profile was about the one before.
+                capture.unknown.shift_remove("profile");
             }
         }
     }
@@ -245,6 +256,55 @@ fn set_cells(session: &mut Session, cells: &[(Place, CellValue)]) -> Result<(), 
         Some(label) => Err(EditRefusal::LabelTaken { label: label.to_owned() }),
         None => Ok(()),
     }
+}
+
+fn check_label(label: &str) -> Result<(), EditRefusal> {
+    let is_usable = !label.trim().is_empty() && !label.chars().any(char::is_control);
+    is_usable.then_some(()).ok_or(EditRefusal::LabelUnusable)
+}
+
+/// A profile is within its limits by its type.
+fn check_reading(reading: &Reading) -> Result<(), EditRefusal> {
+    match reading {
+        Reading::Point(point_in_sensor) => all_within(point_in_sensor, &limits::POINT_MM),
+        Reading::Profile(_) => Ok(()),
+    }
+}
+
+/// Gives a capture another pose, in the form that it would have after saving and loading.
+fn set_pose(
+    capture: &mut Capture,
+    base_from_flange: Transform<Base, Flange>,
+    written_angles: Option<WrittenAngles>,
+) -> Result<(), EditRefusal> {
+    all_within(&base_from_flange.translation_mm(), &limits::POSITION_MM)?;
+    if let Some(written) = &written_angles {
+        written.angles_deg.iter().try_for_each(|angle| within(*angle, &limits::ANGLE_DEG))?;
+    }
+    capture.base_from_flange = as_saved(&base_from_flange);
+    capture.written_angles = written_angles;
+    if written_angles.is_none()
+        && let Some(serde_json::Value::Object(of_pose)) = capture.unknown.get_mut("base_from_flange")
+    {
+        // What else the file said of angles that are there no more.
+        of_pose.shift_remove("written");
+        if of_pose.is_empty() {
+            capture.unknown.shift_remove("base_from_flange");
+        }
+    }
+    Ok(())
+}
+
+/// Of the two quaternions of a rotation the one with `w ≥ 0`, of unit norm as exactly as loading demands.
+fn as_saved(pose: &Transform<Base, Flange>) -> Transform<Base, Flange> {
+    let quaternion = pose.rotation().into_inner();
+    let upper = if quaternion.w < 0.0 { -quaternion } else { quaternion };
+    let rotation = if (upper.norm() - 1.0).abs() > limits::QUATERNION_NORM_EXACT {
+        UnitQuaternion::new_normalize(upper)
+    } else {
+        UnitQuaternion::new_unchecked(upper)
+    };
+    Transform::from_parts(pose.translation_mm(), rotation)
 }
 
 fn repeated_label(stations: &[Station]) -> Option<&str> {
@@ -261,6 +321,7 @@ fn insert(session: &mut Session, at: usize, stations: &[Station]) -> Result<(), 
     let needs_edge = session.target == Target::RightAnglePlate;
     let mut added = stations.to_vec();
     for station in &mut added {
+        check_station(station)?;
         station.label = free_label(&station.label, &taken);
         taken.insert(station.label.clone());
         if needs_edge {
@@ -274,17 +335,31 @@ fn insert(session: &mut Session, at: usize, stations: &[Station]) -> Result<(), 
     Ok(())
 }
 
+/// A station from elsewhere, such as an import, is looked at as a whole.
+fn check_station(station: &mut Station) -> Result<(), EditRefusal> {
+    check_label(&station.label)?;
+    if station.captures.is_empty() {
+        return Err(EditRefusal::NoCaptures { label: station.label.clone() });
+    }
+    for capture in &mut station.captures {
+        set_pose(capture, capture.base_from_flange, capture.written_angles)?;
+        check_reading(&capture.reading)?;
+        capture.step_mm.map_or(Ok(()), |step_mm| within(step_mm, &limits::STEP_MM))?;
+    }
+    Ok(())
+}
+
 /// The label itself, or the first number behind it (or after it, if it is a number) that is free.
 #[must_use]
-pub fn free_label(wanted: &str, taken: &HashSet<String>) -> String {
+pub fn free_label<S: BuildHasher>(wanted: &str, taken: &HashSet<String, S>) -> String {
     if !taken.contains(wanted) {
         return wanted.to_owned();
     }
     if let Ok(number) = wanted.parse::<u32>() {
-        let next = (number..).map(|number| number.to_string()).find(|label| !taken.contains(label));
+        let next = (number..=u32::MAX).map(|number| number.to_string()).find(|label| !taken.contains(label));
         return next.unwrap_or_else(|| wanted.to_owned());
     }
-    (2_u32..).map(|number| format!("{wanted} ({number})")).find(|label| !taken.contains(label)).unwrap_or_default()
+    (2..=u32::MAX).map(|number| format!("{wanted} ({number})")).find(|label| !taken.contains(label)).unwrap_or_default()
 }
 
 /// What a paper printed is one row a station: with other stations it fits no more.
@@ -328,12 +403,14 @@ fn from_the_end(rows: &[Row]) -> Vec<Row> {
 
 fn duplicate(session: &mut Session, rows: &[Row]) -> Result<(), EditRefusal> {
     check_rows(session, rows)?;
+    // A station is copied as it was, also where some of its captures are copied as well.
+    let before = session.stations.clone();
     let mut taken: HashSet<String> = session.stations.iter().map(|station| station.label.clone()).collect();
     for row in from_the_end(rows) {
         let Place { station_idx, capture_idx } = row.place();
         match row {
             Row::Station(_) => {
-                let mut copy = session.stations[station_idx].clone();
+                let mut copy = before[station_idx].clone();
                 copy.label = free_label(&copy.label, &taken);
                 taken.insert(copy.label.clone());
                 session.stations.insert(station_idx + 1, copy);
@@ -423,7 +500,17 @@ fn set_target(session: &mut Session, target: &Target) -> Result<(), EditRefusal>
             return Err(EditRefusal::EdgesMissing);
         }
         Target::Rgbd { .. } if !session.stations.is_empty() => return Err(EditRefusal::NoStationsHere),
+        Target::Rgbd { sequence } if sequence.trim().is_empty() || Path::new(sequence).is_absolute() => {
+            return Err(EditRefusal::NotASequence { found: sequence.clone() });
+        }
         Target::RightAnglePlate | Target::Point | Target::Rgbd { .. } => {}
+    }
+    if std::mem::discriminant(target) != std::mem::discriminant(&session.target) {
+        // The truth is a ball's, and what else the file said was said of the other kind.
+        session.truth = None;
+        for name in ["target", "truth", "sequence", "stations"] {
+            session.unknown.shift_remove(name);
+        }
     }
     session.target = target.clone();
     Ok(())
@@ -446,9 +533,7 @@ fn reinterpret(session: &mut Session, notation: &PoseNotation) -> Result<(), Edi
             let base_from_flange = notation
                 .base_from_flange(&numbers)
                 .map_err(|problem| EditRefusal::NotAPose { label: station.label.clone(), problem })?;
-            all_within(&base_from_flange.translation_mm(), &limits::POSITION_MM)?;
-            capture.base_from_flange = base_from_flange;
-            capture.written_angles = written_angles(&numbers, notation);
+            set_pose(capture, base_from_flange, written_angles(&numbers, notation))?;
         }
     }
     set_notation(session, notation)

@@ -84,11 +84,13 @@ impl History {
     }
 
     /// The edits that can be taken back, the oldest first.
+    #[must_use]
     pub fn undo_labels(&self) -> impl ExactSizeIterator<Item = &str> {
         self.undo.iter().map(|step| step.label.as_str())
     }
 
     /// The edits that can be brought back, the next one first.
+    #[must_use]
     pub fn redo_labels(&self) -> impl ExactSizeIterator<Item = &str> {
         self.redo.iter().rev().map(|step| step.label.as_str())
     }

@@ -10,6 +10,8 @@ use super::theme;
 
 /// Width of the window, points.
 const WIDTH: f32 = 320.0;
+/// Room left at the window's right, where the inspector is, points.
+const BESIDE_INSPECTOR: f32 = 376.0;
 /// Height of the list at most, points.
 const MAX_HEIGHT: f32 = 20.0 * theme::ROW_HEIGHT;
 
@@ -30,8 +32,8 @@ impl HistoryWindow {
             return;
         };
         let mut is_open = self.is_open;
-        let corner = ctx.content_rect().right_top() + vec2(-WIDTH - 48.0, 56.0);
-        Window::new(words::HISTORY)
+        let corner = ctx.content_rect().right_top() + vec2(-WIDTH - BESIDE_INSPECTOR, 56.0);
+        Window::new(theme::strong(words::HISTORY).size(theme::BODY_SIZE))
             .open(&mut is_open)
             .resizable(false)
             .collapsible(false)

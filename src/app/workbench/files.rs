@@ -113,7 +113,7 @@ impl Workbench {
                 Purpose::Open => {
                     if self.may_replace_document(&session.name) {
                         self.last_revision += 1;
-                        let mut document = Document::new(session, path, self.last_revision);
+                        let mut document = Document::new(session, path.map(absolute), self.last_revision);
                         (document.stamp, document.is_read_only) = (stamp, is_read_only);
                         self.put_on_bench(document);
                     }
@@ -205,6 +205,7 @@ impl Workbench {
     /// Saves to a file. The document's own is replaced only if it is as it was; that another may be replaced was asked
     /// where it was chosen.
     pub(super) fn start_saving(&mut self, path: PathBuf) {
+        let path = absolute(path);
         let known = self.document.as_ref().filter(|document| document.path.as_deref() == Some(&*path));
         let known = known.and_then(|document| document.stamp);
         self.queue_save(path, known);
@@ -301,7 +302,7 @@ impl Workbench {
         self.looking.start("look at the file", &self.wake, move |_| look(document_id, &path, known));
     }
 
-    pub(super) fn take_look(&mut self, outcome: JobOutcome<Look>) {
+    pub(super) fn take_look(&mut self, outcome: &JobOutcome<Look>) {
         // A look that broke down is none; saving looks again.
         let JobOutcome::Done(look) = outcome else { return };
         let document = self.document.as_mut().filter(|document| document.id == look.document_id);
@@ -311,6 +312,11 @@ impl Workbench {
             document.stamp = look.touched.or(document.stamp);
         }
     }
+}
+
+/// A path that means the same in another run, which may start in another folder.
+fn absolute(path: PathBuf) -> PathBuf {
+    std::path::absolute(&path).unwrap_or(path)
 }
 
 /// Its time says whether it has to be read; its contents decide.

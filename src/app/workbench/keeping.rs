@@ -1,10 +1,11 @@
 //! Copies of the unsaved session for a run that ends badly, and what such runs have left behind.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::SystemTime;
 
 use crate::app::recovery::{News, Origin, Recoverable, Recovery, RecoverySettings, Snapshot};
-use crate::session::Session;
+use crate::session::{Session, SessionError};
 
 use super::{Document, NoticeKind, Workbench};
 
@@ -67,16 +68,7 @@ impl Workbench {
             match news {
                 News::Found(recoverable) => self.recoverable = recoverable,
                 News::Kept => {}
-                News::Read { file, outcome: Ok((session, origin)) } => {
-                    if self.may_replace_document(&session.name) {
-                        self.open_recovered(session, origin);
-                        // Its copy of our own is asked for before, so one of the two is on disk at any time.
-                        if let Some(recovery) = &self.recovery {
-                            recovery.discard(file);
-                        }
-                    }
-                }
-                News::Read { outcome: Err(error), .. } => self.notify_of_opening(error.to_string()),
+                News::Read { file, outcome } => self.take_copy(file, *outcome),
                 News::NotKept { folder, problem } => self.notify(
                     NoticeKind::Error,
                     format!(
@@ -87,6 +79,21 @@ impl Workbench {
             }
         }
         has_news
+    }
+
+    fn take_copy(&mut self, file: PathBuf, outcome: Result<(Session, Origin), SessionError>) {
+        match outcome {
+            Ok((session, origin)) => {
+                if self.may_replace_document(&session.name) {
+                    self.open_recovered(session, origin);
+                    // A copy of our own is asked for before, so one of the two is on disk at any time.
+                    if let Some(recovery) = &self.recovery {
+                        recovery.discard(file);
+                    }
+                }
+            }
+            Err(error) => self.notify_of_opening(error.to_string()),
+        }
     }
 
     fn open_recovered(&mut self, session: Session, origin: Origin) {

@@ -293,7 +293,7 @@ impl Workbench {
         }
         if let Some(outcome) = self.looking.poll() {
             changed = true;
-            self.take_look(outcome);
+            self.take_look(&outcome);
         }
         changed |= self.take_news_of_recovery();
         if let Some(outcome) = self.solving.poll() {

@@ -12,7 +12,7 @@ use super::{Session, SessionError, Stamp, file_name, parse_with_notes, to_json};
 const TEMPORARY_PREFIX: &str = ".handeye-";
 const TEMPORARY_SUFFIX: &str = ".tmp";
 /// A temporary file that nobody holds is removed once it is older: one that was created a moment ago may not be locked yet.
-const ABANDONED_AFTER: Duration = Duration::from_secs(60);
+const ABANDONED_AFTER: Duration = Duration::from_mins(1);
 
 /// Saves a session, replacing the file in one step: temporary file in the same folder, flush to disk, rename.
 ///

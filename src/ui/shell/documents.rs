@@ -212,16 +212,21 @@ impl Shell {
         }
     }
 
+    /// Files may have come or gone while the user was elsewhere.
+    pub fn look_again(&mut self) {
+        self.start.look_again();
+    }
+
     /// Looks at the file when the user comes back from another program, and now and then while they work: frames come
     /// only when something happens, so an idle window stays idle.
     pub(super) fn look_at_file(&mut self, ctx: &Context) {
         let (now, has_focus) = ctx.input(|input| (input.time, input.focused));
-        let has_come_back = has_focus && !std::mem::replace(&mut self.had_focus, has_focus);
+        let has_come_back = has_focus && !std::mem::replace(&mut self.watch.had_focus, has_focus);
         if has_come_back {
-            self.start.look_again();
+            self.look_again();
         }
-        if has_come_back || now - self.last_look > LOOK_SECONDS {
-            self.last_look = now;
+        if has_come_back || now - self.watch.last_look > LOOK_SECONDS {
+            self.watch.last_look = now;
             self.workbench.apply(Command::CheckFile);
         }
     }

@@ -44,6 +44,15 @@ enum Pending {
     Quit,
 }
 
+/// When the document's file was looked at last.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct FileWatch {
+    /// In the time of the frames, s.
+    last_look: f64,
+    /// Whether the window had the focus then.
+    had_focus: bool,
+}
+
 /// The window without its operating-system part: a test, the screenshot and eframe drive the same thing.
 pub struct Shell {
     workbench: Workbench,
@@ -65,8 +74,7 @@ pub struct Shell {
     history: HistoryWindow,
     /// The state of the file on disk whose strip was dismissed.
     dismissed_on_disk: Option<(u64, OnDisk)>,
-    last_look: f64,
-    had_focus: bool,
+    watch: FileWatch,
     is_closing_again: bool,
     unsaved_question: Option<Pending>,
     after_saving: Option<Pending>,
@@ -108,8 +116,7 @@ impl Shell {
             is_help_open: false,
             history: HistoryWindow::default(),
             dismissed_on_disk: None,
-            last_look: 0.0,
-            had_focus: true,
+            watch: FileWatch { last_look: 0.0, had_focus: true },
             is_closing_again: false,
             unsaved_question: None,
             after_saving: None,

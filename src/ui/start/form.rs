@@ -45,16 +45,14 @@ impl FormState {
     /// The row of a field: its label at the left, the field and its unit at the right, and what is wrong with it below.
     pub fn row(&mut self, ui: &mut Ui, document: &Document, field: Field, commands: &mut Vec<Command>) {
         split_row(ui, field.label(), |ui| {
-            ui.spacing_mut().item_spacing.x = 4.0;
+            let unit = unit_column(ui);
             if field.is_text() {
                 let width = TEXT_WIDTH.min(ui.available_width() * 0.66);
                 self.text_field(ui, document, field, width, commands);
             } else {
-                let (unit_rect, _) = ui.allocate_exact_size(vec2(UNIT_WIDTH, theme::ROW_HEIGHT), egui::Sense::hover());
-                let unit = theme::dim(ui, field.unit());
-                let mut unit_ui = ui
-                    .new_child(egui::UiBuilder::new().max_rect(unit_rect).layout(Layout::left_to_right(Align::Center)));
-                unit_ui.label(unit);
+                let words = theme::dim(ui, field.unit());
+                let layout = Layout::left_to_right(Align::Center);
+                ui.new_child(egui::UiBuilder::new().max_rect(unit).layout(layout)).label(words);
                 self.number_field(ui, document, field, commands);
             }
         });
@@ -75,7 +73,7 @@ impl FormState {
         let mut text = field.text(&document.session);
         let edit = match field {
             Field::Notes => TextEdit::multiline(&mut text).desired_rows(NOTES_ROWS),
-            _ => TextEdit::singleline(&mut text),
+            _ => TextEdit::singleline(&mut text).align(Align2::LEFT_CENTER),
         };
         let edit = edit.id(id_of(field)).hint_text(field.hint()).margin(vec2(8.0, 3.0)).desired_width(width);
         let response = ui.add(edit);
@@ -145,6 +143,7 @@ impl FormState {
 pub fn target_row(ui: &mut Ui, document: &Document, commands: &mut Vec<Command>) {
     let target = &document.session.target;
     split_row(ui, words::TARGET, |ui| {
+        unit_column(ui);
         let Some(present) = TargetKind::of(target) else {
             ui.label(words::target(target));
             return;
@@ -159,6 +158,7 @@ pub fn target_row(ui: &mut Ui, document: &Document, commands: &mut Vec<Command>)
 /// Where the sensor is.
 pub fn mount_row(ui: &mut Ui, document: &Document, commands: &mut Vec<Command>) {
     split_row(ui, words::MOUNT, |ui| {
+        unit_column(ui);
         let choices = MOUNTS.map(|mount| (words::mount(mount), mount));
         if let Some(mount) = choice(ui, words::MOUNT, document.session.mount, &choices) {
             commands.push(setup(SetupField::Mount(mount)));
@@ -180,7 +180,6 @@ const fn setup(field: SetupField) -> Command {
 fn choice<T: Copy + PartialEq>(ui: &mut Ui, name: &str, present: T, choices: &[(&str, T)]) -> Option<T> {
     let mut chosen = present;
     let shown = choices.iter().find(|(_, value)| *value == present).map_or("", |(shown, _)| *shown);
-    ui.spacing_mut().interact_size.y = theme::ROW_HEIGHT;
     ui.spacing_mut().button_padding.y = 2.0;
     let combo = ComboBox::from_id_salt(name).selected_text(shown).width(TEXT_WIDTH - 44.0).show_ui(ui, |ui| {
         for (shown, value) in choices {
@@ -189,6 +188,13 @@ fn choice<T: Copy + PartialEq>(ui: &mut Ui, name: &str, present: T, choices: &[(
     });
     combo.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, name));
     (chosen != present).then_some(chosen)
+}
+
+/// The room for units at the right of a row, so that all fields end at one line; fields are as high as rows.
+fn unit_column(ui: &mut Ui) -> egui::Rect {
+    ui.spacing_mut().item_spacing.x = 4.0;
+    ui.spacing_mut().interact_size.y = theme::ROW_HEIGHT;
+    ui.allocate_exact_size(vec2(UNIT_WIDTH, theme::ROW_HEIGHT), egui::Sense::hover()).0
 }
 
 /// Stable, so that the focus outlives another document's layout.

@@ -71,7 +71,8 @@ fn offer(ui: &mut Ui, idx: usize, recoverable: &Recoverable, commands: &mut Vec<
                     state.to_discard = Some(recoverable.file.clone());
                 }
                 if recoverable.origin.is_ok() {
-                    let recover = primary_button(ui, document_words::RECOVER);
+                    let words = document_words::RECOVER;
+                    let recover = if idx == 0 { primary_button(ui, words) } else { ui.button(words) };
                     recover.widget_info(|| WidgetInfo::labeled(Role::Button, true, document_words::recover(&title)));
                     if recover.on_hover_text(document_words::RECOVER_HINT).clicked() {
                         commands.push(Command::Recover(idx));

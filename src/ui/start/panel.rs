@@ -159,7 +159,7 @@ fn open_card(
 fn path_row(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut StartState) {
     ui.horizontal(|ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let is_first = context.workbench.document().is_none();
+            let is_first = context.workbench.document().is_none() && context.workbench.recoverable().is_empty();
             let open = if is_first { primary_button(ui, words::CHOOSE_FILE) } else { ui.button(words::CHOOSE_FILE) };
             if open.clicked() {
                 context.actions.push(Action::Open);
