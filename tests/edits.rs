@@ -38,7 +38,8 @@ fn reading() -> impl Strategy<Value = Reading> {
 }
 
 fn convention() -> impl Strategy<Value = &'static PoseConvention> {
-    (0..PoseConvention::ALL.len()).prop_map(|idx| &PoseConvention::ALL[idx])
+    let all: Vec<_> = PoseConvention::all().collect();
+    (0..all.len()).prop_map(move |idx| all[idx])
 }
 
 fn written() -> impl Strategy<Value = Option<WrittenAngles>> {

@@ -9,6 +9,7 @@ use egui::{
 use crate::app::{Command, Document};
 use crate::session::Row;
 use crate::session::table::Column;
+use crate::text::conventions::poses_title;
 use crate::text::poses as words;
 use crate::ui::theme::{self, Palette, ROW_HEIGHT};
 
@@ -130,7 +131,8 @@ impl Grid<'_> {
     fn pointer(&self, ui: &Ui, sheet: &mut Sheet, geometry: &Geometry, commands: &mut Vec<Command>) {
         let (num_rows, num_columns) = (sheet.view.rows.len(), sheet.view.columns.len());
         let response = ui.interact(ui.clip_rect(), self.id, Sense::click_and_drag());
-        response.widget_info(|| WidgetInfo::labeled(Role::Grid, true, words::TITLE));
+        let title = poses_title(&self.document.session.robot.notation);
+        response.widget_info(|| WidgetInfo::labeled(Role::Grid, true, title));
         let (position, is_pressed, modifiers) =
             ui.input(|input| (input.pointer.interact_pos(), input.pointer.primary_pressed(), input.modifiers));
         // A quick click is over within the frame in which it began.
