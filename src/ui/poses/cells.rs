@@ -125,10 +125,6 @@ impl Grid<'_> {
                 sweep_mark(ui, rect, station.captures.len(), ink);
             }
         }
-        let check = geometry.cell(row_idx, num_columns);
-        if ui.is_rect_visible(check) {
-            self.check(ui, sheet, check, row, session, ink);
-        }
     }
 
     fn gutter(&self, ui: &mut Ui, sheet: &mut Sheet, rect: Rect, ink: &Ink, row: Row, is_selected: bool) {
@@ -155,7 +151,8 @@ impl Grid<'_> {
         }
     }
 
-    fn check(&self, ui: &Ui, sheet: &Sheet, rect: Rect, row: Row, session: &Session, ink: &Ink) {
+    /// Draws what the check says of a row.
+    pub(super) fn check(&self, ui: &Ui, sheet: &Sheet, rect: Rect, row: Row, session: &Session, ink: &Ink) {
         let place = row.place();
         let station = &session.stations[place.station_idx];
         let palette = ink.palette;
