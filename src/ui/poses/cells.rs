@@ -235,7 +235,12 @@ fn checkbox(ui: &mut Ui, rect: Rect, is_enabled: bool, label: &str) -> bool {
 fn cell_text(ui: &Ui, rect: Rect, column: Column, text: &str, color: Color32, ink: &Ink, id: Id) -> Response {
     let pad = f32::from(CELL_PADDING);
     let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
-    if column.is_number() {
+    let is_cut = rect.right() > ui.clip_rect().right() + 1.0 || rect.left() < ui.clip_rect().left() - 1.0;
+    if column.is_number() && is_cut && !text.is_empty() {
+        // Half a number would be another one.
+        let seen = rect.intersect(ui.clip_rect());
+        painter.text(seen.center(), Align2::CENTER_CENTER, "…", ink.body.clone(), ink.palette.text_dim);
+    } else if column.is_number() {
         let at = pos2(rect.right() - pad, rect.center().y);
         painter.text(at, Align2::RIGHT_CENTER, text, ink.number.clone(), color);
     } else {
