@@ -10,6 +10,7 @@ use egui_kittest::kittest::Queryable as _;
 use handeye::app::{Command, NoticeKind, Workbench};
 use handeye::diagnose::Severity;
 use handeye::session::edit::CellValue;
+use handeye::session::table::Column;
 use handeye::session::{self, Edit, Place, samples};
 use handeye::text::start::{open_sample, sample_lesson};
 use handeye::text::{poses as pose_words, shell as shell_words, start as start_words};
@@ -376,4 +377,35 @@ fn ctrl_y_brings_back_what_was_undone() {
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Y);
     settle(&mut harness);
     assert!(!is_enabled(&harness, 1));
+}
+
+#[test]
+fn in_the_table_digits_are_typed_and_undo_is_the_texts_own() {
+    let mut harness = window_with("lin-mu-2019-table-1.json");
+    click(&mut harness, Step::Poses.name());
+    click(&mut harness, "x of 2");
+    for text in ["5", "4"] {
+        harness.event(egui::Event::Text(text.to_owned()));
+        harness.run_steps(2);
+    }
+    harness.key_press(Key::Enter);
+    settle(&mut harness);
+    assert_eq!(harness.state().shell().step(), Step::Poses, "digits go to the cell");
+    let x_mm = |harness: &Harness<'static, Window>| {
+        let document = workbench(harness).document().expect("open");
+        session::table::text(&document.session, Place { station_idx: 1, capture_idx: 0 }, Column::Number(0))
+    };
+    assert_eq!(x_mm(&harness), "54");
+    harness.key_press(Key::F2);
+    harness.run_steps(2);
+    harness.event(egui::Event::Text("7".to_owned()));
+    harness.run_steps(2);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    settle(&mut harness);
+    assert_eq!(x_mm(&harness), "54", "what is typed has an undo of its own");
+    harness.key_press(Key::Escape);
+    harness.run_steps(2);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    settle(&mut harness);
+    assert_eq!(x_mm(&harness), "340.971");
 }

@@ -125,10 +125,6 @@ impl Grid<'_> {
                 sweep_mark(ui, rect, station.captures.len(), ink);
             }
         }
-        let check = geometry.cell(row_idx, num_columns);
-        if ui.is_rect_visible(check) {
-            self.check(ui, sheet, check, row, session, ink);
-        }
     }
 
     fn gutter(&self, ui: &mut Ui, sheet: &mut Sheet, rect: Rect, ink: &Ink, row: Row, is_selected: bool) {
@@ -155,7 +151,8 @@ impl Grid<'_> {
         }
     }
 
-    fn check(&self, ui: &Ui, sheet: &Sheet, rect: Rect, row: Row, session: &Session, ink: &Ink) {
+    /// Draws what the check says of a row.
+    pub(super) fn check(&self, ui: &Ui, sheet: &Sheet, rect: Rect, row: Row, session: &Session, ink: &Ink) {
         let place = row.place();
         let station = &session.stations[place.station_idx];
         let palette = ink.palette;
@@ -238,7 +235,12 @@ fn checkbox(ui: &mut Ui, rect: Rect, is_enabled: bool, label: &str) -> bool {
 fn cell_text(ui: &Ui, rect: Rect, column: Column, text: &str, color: Color32, ink: &Ink, id: Id) -> Response {
     let pad = f32::from(CELL_PADDING);
     let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
-    if column.is_number() {
+    let is_cut = rect.right() > ui.clip_rect().right() + 1.0 || rect.left() < ui.clip_rect().left() - 1.0;
+    if column.is_number() && is_cut && !text.is_empty() {
+        // Half a number would be another one.
+        let seen = rect.intersect(ui.clip_rect());
+        painter.text(seen.center(), Align2::CENTER_CENTER, "…", ink.body.clone(), ink.palette.text_dim);
+    } else if column.is_number() {
         let at = pos2(rect.right() - pad, rect.center().y);
         painter.text(at, Align2::RIGHT_CENTER, text, ink.number.clone(), color);
     } else {

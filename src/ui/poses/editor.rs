@@ -67,7 +67,7 @@ impl Editor {
             .event_filter(keys);
         // In the line of the cell's own text, to the point.
         let mut inside = ui.new_child(UiBuilder::new().max_rect(rect).layout(Layout::left_to_right(Align::Center)));
-        inside.spacing_mut().extra_text_line_spacing = 0.0;
+        inside.spacing_mut().interact_size.y = 0.0;
         let response = inside.add(field).labelled_by(label_id);
         ui.painter().rect_stroke(rect, 0.0, Stroke::new(2.0, palette.accent), StrokeKind::Inside);
         response

@@ -53,6 +53,14 @@ impl Geometry {
         Rangef::new(top, top + ROW_HEIGHT)
     }
 
+    /// The check stays in sight while the columns scroll behind it.
+    pub fn check_range(&self) -> Rangef {
+        let num_columns = self.edges.len() - 2;
+        let natural = self.column_range(num_columns);
+        let left = natural.min.min(self.viewport.right() - SCROLL_BAR_ROOM - natural.span());
+        Rangef::new(left, self.viewport.right())
+    }
+
     pub fn cell(&self, row: usize, column: usize) -> Rect {
         Rect::from_x_y_ranges(self.column_range(column), self.row_range(row))
     }
@@ -113,9 +121,14 @@ impl Grid<'_> {
                     viewport: viewport.translate(contents.min.to_vec2()),
                 };
                 self.pointer(ui, sheet, &geometry, commands);
+                self.checks(ui, sheet, &geometry, &ink);
+                ui.set_clip_rect(ui.clip_rect().with_max_x(geometry.check_range().min.min(ui.clip_rect().right())));
                 self.body(ui, sheet, &geometry, &ink, commands);
                 if std::mem::take(&mut sheet.brings_into_view) && num_rows > 0 {
-                    ui.scroll_to_rect(geometry.cell(sheet.cursor.row, sheet.cursor.column), None);
+                    // Clear of the check.
+                    let mut cell = geometry.cell(sheet.cursor.row, sheet.cursor.column);
+                    cell.max.x += layout.widths.last().copied().unwrap_or_default() + SCROLL_BAR_ROOM;
+                    ui.scroll_to_rect(cell, None);
                 }
             },
         );
@@ -179,6 +192,22 @@ impl Grid<'_> {
         }
         self.cursor(ui, sheet, geometry, ink);
         Self::editor(ui, sheet, geometry, commands);
+    }
+
+    fn checks(&self, ui: &Ui, sheet: &Sheet, geometry: &Geometry, ink: &Ink) {
+        let num_rows = sheet.view.rows.len();
+        let Some(last) = num_rows.checked_sub(1) else { return };
+        let first = geometry.row_at(geometry.viewport.top(), num_rows);
+        let last = geometry.row_at(geometry.viewport.bottom(), num_rows).min(last);
+        let hairline = Stroke::new(1.0, ink.palette.hairline);
+        let range = geometry.check_range();
+        for row in first..=last {
+            let rect = Rect::from_x_y_ranges(range, geometry.row_range(row));
+            self.check(ui, sheet, rect, sheet.view.rows[row], &self.document.session, ink);
+            ui.painter().hline(rect.x_range(), rect.bottom(), hairline);
+        }
+        let rows = Rangef::new(geometry.row_range(first).min, geometry.row_range(last).max);
+        ui.painter().vline(range.min, rows, hairline);
     }
 
     /// The hairlines between columns, once for all rows.
@@ -247,11 +276,15 @@ impl Grid<'_> {
         painter.hline(rect.x_range(), rect.bottom(), Stroke::new(1.0, palette.hairline));
         let num_columns = sheet.view.columns.len();
         let selected = sheet.cursor.columns(num_columns);
+        let check_width = layout.widths.last().copied().unwrap_or_default();
+        let check_left =
+            (rect.left() + edges[num_columns] - offset_x).min(rect.right() - SCROLL_BAR_ROOM - check_width);
+        let columns = rect.with_max_x(check_left);
         let mut clicked = None;
         for (idx, column) in sheet.view.columns.iter().copied().enumerate() {
             let left = rect.left() + edges[idx] - offset_x;
             let cell = Rect::from_min_size(pos2(left, rect.top()), vec2(layout.widths[idx], rect.height()));
-            let seen = cell.intersect(rect);
+            let seen = cell.intersect(columns);
             if !seen.is_positive() {
                 continue;
             }
@@ -280,13 +313,12 @@ impl Grid<'_> {
                 let at = pos2(cell.left() + pad, cell.center().y);
                 clip.text(at, Align2::LEFT_CENTER, text, ink.small.clone(), color);
             }
-            painter.vline(cell.left(), rect.y_range(), Stroke::new(1.0, palette.hairline));
+            clip.vline(cell.left(), rect.y_range(), Stroke::new(1.0, palette.hairline));
             response.widget_info(|| WidgetInfo::labeled(Role::ColumnHeader, true, words::sort_by(&head)));
             if response.on_hover_text(words::SORT_HINT).clicked() {
                 clicked = Some(column);
             }
         }
-        let check_left = rect.left() + edges[num_columns] - offset_x;
         painter.vline(check_left, rect.y_range(), Stroke::new(1.0, palette.hairline));
         let at = pos2(check_left + f32::from(CELL_PADDING), rect.center().y);
         painter.text(at, Align2::LEFT_CENTER, words::CHECK, ink.small.clone(), palette.text_dim);

@@ -48,12 +48,15 @@ fn show_table(ui: &mut Ui, context: &mut PanelContext<'_>, document: &Document, 
     let id = Id::unique("pose table");
     follow_selection(context, sheet, *seen);
     let has_focus = take_keys(ui, id, sheet, keyboard, document, context.commands);
+    let (has_sweeps, is_all_unfolded) = (sheet.view.num_sweeps() > 0, sheet.view.is_all_unfolded());
+    let mut folds_all = false;
     let height = ui.available_height();
     card_with_height(
         ui,
         poses_title(&document.session.robot.notation),
         height,
         |ui| {
+            folds_all = has_sweeps && toolbar::fold_button(ui, is_all_unfolded);
             let stations = &document.session.stations;
             let num_enabled = stations.iter().filter(|station| station.enabled).count();
             ui.label(theme::dim(ui, words::usage(num_enabled, stations.len())));
@@ -75,6 +78,9 @@ fn show_table(ui: &mut Ui, context: &mut PanelContext<'_>, document: &Document, 
             ui.advance_cursor_after_rect(area);
         },
     );
+    if folds_all {
+        sheet.fold_all(!is_all_unfolded);
+    }
     sheet.takes_keyboard |= keyboard.end_editor(sheet, context.commands);
     // Last of all, as a click anywhere but on the grid itself takes the keyboard away from it.
     if std::mem::take(&mut sheet.takes_keyboard) {
@@ -145,6 +151,7 @@ fn show_line(ui: &mut Ui, sheet: &mut Sheet, document: &Document) {
     let palette = theme::palette(ui);
     let session = &document.session;
     ui.painter().hline(ui.max_rect().x_range(), ui.max_rect().top(), (1.0, palette.hairline));
+    ui.set_max_width(ui.available_width() - theme::GAP);
     ui.add_space(theme::GAP);
     let num_waiting = sheet.pending.count(session);
     let here = sheet.cell().filter(|(row, column)| has_cell(session, *row, *column));

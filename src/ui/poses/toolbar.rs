@@ -58,13 +58,13 @@ pub fn show(ui: &mut Ui, sheet: &mut Sheet, document: &Document, commands: &mut 
     if button(ui, words::PASTE, words::PASTE_HINT, true) {
         ui.ctx().send_viewport_cmd(egui::ViewportCommand::RequestPaste);
     }
-    if sheet.view.num_sweeps() > 0 {
-        ui.add_space(8.0);
-        let is_all_unfolded = sheet.view.is_all_unfolded();
-        let label = if is_all_unfolded { words::FOLD_ALL } else { words::UNFOLD_ALL };
-        if button(ui, label, label, true) {
-            sheet.fold_all(!is_all_unfolded);
-        }
-    }
     is_used.get()
+}
+
+/// Draws the button that folds or unfolds all sweeps. Answers whether it was clicked.
+pub fn fold_button(ui: &mut Ui, is_all_unfolded: bool) -> bool {
+    ui.spacing_mut().interact_size.y = theme::ROW_HEIGHT;
+    ui.spacing_mut().button_padding = vec2(8.0, 2.0);
+    let label = if is_all_unfolded { words::FOLD_ALL } else { words::UNFOLD_ALL };
+    ui.add(Button::new(RichText::new(label).small()).min_size(vec2(0.0, theme::ROW_HEIGHT))).clicked()
 }
