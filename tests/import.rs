@@ -322,8 +322,8 @@ fn files_of_many_programs_and_countries_are_read() {
     assert_eq!(sweep.stations[0].captures.len(), 2);
     assert_eq!(sweep.stations[0].captures[1].step_mm, Some(0.5));
     check_file("units-below.csv", table, (2, 0), 0, [562.4, -110.2, 139.4]);
-    // The row of dots is said to be left out.
-    let plate = check_file("plate-paper.txt", table, (3, 3), 1, [170.208, 4.1677, 102.357]);
+    // A row of dots says that rows are left out in the paper.
+    let plate = check_file("plate-paper.txt", table, (3, 3), 0, [170.208, 4.1677, 102.357]);
     assert_eq!(plate.stations[2].label, "17");
     let groups = check_file("two-groups.ls", Kind::FanucProgram, (1, 0), 0, [100.0, -20.0, 30.0]);
     assert!(groups.notes.contains(&Note::OtherGroups { num_poses: 1 }));

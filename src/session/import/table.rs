@@ -266,7 +266,9 @@ fn fill_by_values(roles: &mut [Option<Role>], layout: &Layout, said: &mut Said) 
     };
     if lead == 1 {
         let first = free.remove(0);
-        let is_label = !has_label && (!is_number(first) || is_numbering(sample, first));
+        // Whole numbers are names; others in front of a pose are times.
+        let is_whole = sample.iter().all(|row| row.get(first).is_some_and(|value| value.fract() == 0.0));
+        let is_label = !has_label && (!is_number(first) || is_whole);
         roles[first] = Some(if is_label { Role::Label } else { Role::Ignore });
     }
     free.retain(|column| is_number(*column));

@@ -1,5 +1,6 @@
 //! YAML and JSON: lists of points, poses as maps, lists of numbers or matrices, in whatever structure they stand.
 
+mod flow;
 mod poses;
 mod tree;
 

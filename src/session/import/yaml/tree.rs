@@ -2,6 +2,8 @@
 
 use saphyr_parser::{Event, Parser, ScalarStyle};
 
+use super::flow;
+
 use crate::session::import::text::{excerpt, is_missing, number};
 
 /// Deeper structures hold no poses.
@@ -16,6 +18,11 @@ pub(super) struct Item {
 }
 
 impl Item {
+    fn new((line, column): (usize, usize), node: Node) -> Self {
+        let small = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
+        Self { line: small(line), column: small(column), node }
+    }
+
     /// Line and column, from 1.
     pub const fn at(&self) -> (usize, usize) {
         (self.line as usize, self.column as usize)
@@ -40,86 +47,155 @@ pub(super) struct Problem {
     pub expected: &'static str,
 }
 
+impl Node {
+    /// A scalar without quotation marks.
+    pub fn plain(text: &str) -> Self {
+        let is_null = is_missing(text) || matches!(text, "~" | ".nan" | ".NaN" | ".NAN");
+        match number(text, false) {
+            Some(value) => Self::Number(value),
+            None if is_null => Self::Number(f64::NAN),
+            None => Self::Text(text.into()),
+        }
+    }
+}
+
 /// A list or map that is not closed yet.
-enum Open {
-    List { at: (u32, u32), numbers: Vec<f64>, items: Vec<Item> },
-    Map { at: (u32, u32), key: Option<Box<str>>, entries: Vec<(Box<str>, Item)> },
+pub(super) enum Open {
+    List { at: (usize, usize), numbers: Vec<f64>, items: Vec<Item> },
+    Map { at: (usize, usize), key: Option<Box<str>>, entries: Vec<(Box<str>, Item)> },
+}
+
+impl Open {
+    pub const fn list(at: (usize, usize)) -> Self {
+        Self::List { at, numbers: Vec::new(), items: Vec::new() }
+    }
+
+    pub const fn map(at: (usize, usize)) -> Self {
+        Self::Map { at, key: None, entries: Vec::new() }
+    }
+}
+
+/// A tree under construction.
+#[derive(Default)]
+pub(super) struct Tree {
+    roots: Vec<Item>,
+    open: Vec<Open>,
+}
+
+impl Tree {
+    /// Begins a list or map.
+    ///
+    /// # Errors
+    /// [`Problem`] if it lies too deep.
+    pub fn open(&mut self, at: (usize, usize), open: Open) -> Result<(), Problem> {
+        if self.open.len() >= MAX_DEPTH {
+            let expected = "at most 16 of them in each other";
+            return Err(Problem { at, found: "lists in lists".to_owned(), expected });
+        }
+        self.open.push(open);
+        Ok(())
+    }
+
+    /// Ends the list, or the map, that was begun last; false if that is another.
+    pub fn close(&mut self, is_list: bool) -> bool {
+        match self.open.pop() {
+            Some(Open::List { at, mut numbers, mut items }) if is_list => {
+                numbers.shrink_to_fit();
+                items.shrink_to_fit();
+                let node = if items.is_empty() { Node::Numbers(numbers) } else { Node::List(items) };
+                self.add(at, node);
+                true
+            }
+            Some(Open::Map { at, key, mut entries }) if !is_list => {
+                entries.extend(key.map(|key| (key, Item::new(at, Node::Number(f64::NAN)))));
+                entries.shrink_to_fit();
+                self.add(at, Node::Map(entries));
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// Ends an entry of a map; a key without a value has none.
+    pub fn end_entry(&mut self, at: (usize, usize)) {
+        if let Some(Open::Map { key: Some(_), .. }) = self.open.last() {
+            self.add(at, Node::Number(f64::NAN));
+        }
+    }
+
+    /// What is complete, if everything that was begun is ended.
+    pub fn take_root(&mut self) -> Option<Item> {
+        if self.open.is_empty() { self.roots.pop() } else { None }
+    }
+
+    /// Puts a value where it belongs: into the list or map that is open.
+    pub fn add(&mut self, at: (usize, usize), node: Node) {
+        self.add_item(Item::new(at, node));
+    }
+
+    fn add_item(&mut self, item: Item) {
+        match self.open.last_mut() {
+            None => self.roots.push(item),
+            Some(Open::List { at, numbers, items }) => match item.node {
+                Node::Number(value) if items.is_empty() => numbers.push(value),
+                _ => {
+                    // No list of numbers after all.
+                    items.extend(numbers.drain(..).map(|value| Item::new(*at, Node::Number(value))));
+                    items.push(item);
+                }
+            },
+            Some(Open::Map { key, entries, .. }) => match key.take() {
+                Some(key) => entries.push((key, item)),
+                None => {
+                    *key = Some(match item.node {
+                        Node::Text(text) => text,
+                        Node::Number(number) => number.to_string().into(),
+                        // A structure as a key names nothing.
+                        Node::Numbers(_) | Node::List(_) | Node::Map(_) => "".into(),
+                    });
+                }
+            },
+        }
+    }
 }
 
 /// The documents of a text, and what stopped the reading of the last.
 pub(super) fn parse(text: &str) -> (Vec<Item>, Option<Problem>) {
+    let mut replaced = flow::replace(text);
+    let mut tree = Tree::default();
+    let problem = blocks(&replaced.text, &mut replaced.values, &mut tree).err();
+    (tree.roots, replaced.problem.or(problem))
+}
+
+/// Reads what stands outside brackets.
+fn blocks(text: &str, values: &mut [Option<Item>], tree: &mut Tree) -> Result<(), Problem> {
     let mut parser = Parser::new_from_str(text);
-    let mut roots = Vec::new();
-    let mut open: Vec<Open> = Vec::new();
     while let Some(event) = parser.next_event() {
-        let (event, span) = match event {
-            Ok(event) => event,
-            Err(error) => {
-                let at = (error.marker().line(), error.marker().col() + 1);
-                return (roots, Some(Problem { at, found: excerpt(error.info()).into(), expected: "YAML or JSON" }));
-            }
-        };
-        let (line, column) = (span.start.line(), span.start.col() + 1);
-        let at = (u32::try_from(line).unwrap_or(u32::MAX), u32::try_from(column).unwrap_or(u32::MAX));
-        let problem = |found: &str, expected| Some(Problem { at: (line, column), found: found.to_owned(), expected });
+        let (event, span) = event.map_err(|error| Problem {
+            at: (error.marker().line(), error.marker().col() + 1),
+            found: excerpt(error.info()).into(),
+            expected: "YAML or JSON",
+        })?;
+        let at = (span.start.line(), span.start.col() + 1);
         match event {
-            Event::Alias(_) => return (roots, problem("an alias", "values that are written out")),
-            Event::SequenceStart(..) | Event::MappingStart(..) if open.len() >= MAX_DEPTH => {
-                return (roots, problem("lists in lists", "at most 16 of them in each other"));
+            Event::Alias(_) => {
+                return Err(Problem { at, found: "an alias".to_owned(), expected: "values that are written out" });
             }
-            Event::SequenceStart(..) => open.push(Open::List { at, numbers: Vec::new(), items: Vec::new() }),
-            Event::MappingStart(..) => open.push(Open::Map { at, key: None, entries: Vec::new() }),
-            Event::Scalar(value, style, ..) => {
-                let is_plain = style == ScalarStyle::Plain;
-                let is_null = is_missing(&value) || matches!(&*value, "~" | ".nan" | ".NaN" | ".NAN");
-                let node = match number(&value, false) {
-                    Some(value) if is_plain => Node::Number(value),
-                    _ if is_plain && is_null => Node::Number(f64::NAN),
-                    _ => Node::Text(value.into()),
-                };
-                add(&mut open, &mut roots, at, node);
-            }
-            Event::SequenceEnd | Event::MappingEnd => match open.pop() {
-                Some(Open::List { at, numbers, items }) => {
-                    let node = if items.is_empty() { Node::Numbers(numbers) } else { Node::List(items) };
-                    add(&mut open, &mut roots, at, node);
+            Event::SequenceStart(..) => tree.open(at, Open::list(at))?,
+            Event::MappingStart(..) => tree.open(at, Open::map(at))?,
+            Event::Scalar(scalar, style, ..) => {
+                let value = flow::placeholder(&scalar).and_then(|idx| values.get_mut(idx)?.take());
+                match value {
+                    Some(item) => tree.add_item(item),
+                    None if style == ScalarStyle::Plain => tree.add(at, Node::plain(&scalar)),
+                    None => tree.add(at, Node::Text(scalar.into())),
                 }
-                Some(Open::Map { at, entries, .. }) => add(&mut open, &mut roots, at, Node::Map(entries)),
-                None => {}
-            },
+            }
+            Event::SequenceEnd | Event::MappingEnd => {
+                tree.close(event == Event::SequenceEnd);
+            }
             Event::Nothing | Event::StreamStart | Event::StreamEnd | Event::DocumentStart(_) | Event::DocumentEnd => {}
         }
     }
-    (roots, None)
-}
-
-/// Puts a value where it belongs: into the list or map that is open.
-fn add(open: &mut [Open], roots: &mut Vec<Item>, (line, column): (u32, u32), node: Node) {
-    match open.last_mut() {
-        None => roots.push(Item { line, column, node }),
-        Some(Open::List { at, numbers, items }) => match node {
-            Node::Number(value) if items.is_empty() => numbers.push(value),
-            node => {
-                // No list of numbers after all.
-                let (line_of_list, column_of_list) = *at;
-                items.extend(numbers.drain(..).map(|value| Item {
-                    line: line_of_list,
-                    column: column_of_list,
-                    node: Node::Number(value),
-                }));
-                items.push(Item { line, column, node });
-            }
-        },
-        Some(Open::Map { key, entries, .. }) => match key.take() {
-            Some(key) => entries.push((key, Item { line, column, node })),
-            None => {
-                *key = Some(match node {
-                    Node::Text(text) => text,
-                    Node::Number(number) => number.to_string().into(),
-                    // A structure as a key names nothing.
-                    Node::Numbers(_) | Node::List(_) | Node::Map(_) => "".into(),
-                });
-            }
-        },
-    }
+    Ok(())
 }
