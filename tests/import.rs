@@ -87,8 +87,8 @@ fn of_a_text_with_several_tables_the_first_is_taken_and_that_is_said() {
 
 #[test]
 fn a_table_copied_as_plain_text_is_the_same() {
-    let text = "1 q0=0.07921 t1=306.433 xs=−26.25 xb=324.442\nq1=−0.1606 t2=−54.903 ys=4.0246\n\
-        q₂ = - 0. 979 t3=59.2488 zs=78.46\nq3=-0.0914\n";
+    let text = "1 q0=0.07921 t1=306.433 xs=\u{2212}26.25 xb=324.442\nq1=\u{2212}0.1606 t2=\u{2212}54.903 ys=4.0246\n\
+        q\u{2082} = - 0. 979 t3\u{ff1d}59\u{ff0e}2488 zs=78.46\nq3=-0.0914\n";
     let imported = import_text(text);
     let expected = sample("lin-mu-2019-table-1.json");
     let capture = &imported.stations[0].captures[0];
@@ -294,4 +294,128 @@ fn a_session_adds_its_stations_to_another() {
     let imported =
         read(&sources, &ImportOptions::default(), &PoseNotation::default(), &mut Unwatched).expect("an import");
     assert_eq!((imported.parts[0].kind, imported.stations.len()), (Kind::Session, 10));
+}
+
+/// What a file of `tests/data/import` gives: poses, readings, kind, and the first position in millimetres.
+#[track_caller]
+fn check_file(name: &str, kind: Kind, counts: (usize, usize), num_problems: usize, first_mm: [f64; 3]) -> Imported {
+    let imported = import_file(name);
+    let part = &imported.parts[0];
+    assert_eq!((part.kind, part.num_poses, part.num_readings), (kind, counts.0, counts.1), "{name}");
+    assert_eq!(imported.problems.len(), num_problems, "{name}: {:?}", imported.problems);
+    let found = imported.stations[0].captures[0].base_from_flange.translation_mm();
+    assert!(found.iter().zip(first_mm).all(|(found, expected)| (found - expected).abs() < 1e-3), "{name}: {found}");
+    imported
+}
+
+#[test]
+fn files_of_many_programs_and_countries_are_read() {
+    let table = Kind::PoseTable;
+    let spaced = check_file("utf16-decimal-comma.csv", table, (2, 0), 0, [562.415, -110.2, 139.4]);
+    assert_eq!(spaced.stations[0].label, "P 1");
+    assert_eq!(spaced.options.notation.expect("known").convention.id, "kuka-abc");
+    check_file("old-mac.tsv", table, (2, 0), 0, [562.4, -110.2, 139.4]);
+    check_file("latin-1.csv", table, (2, 0), 0, [562.4, -110.2, 139.4]);
+    let sheet = check_file("spreadsheet.csv", table, (2, 0), 0, [562.4, -110.2, 139.4]);
+    assert_eq!((sheet.stations[0].enabled, sheet.stations[1].enabled), (true, false));
+    let sweep = check_file("sweep.csv", table, (3, 0), 0, [500.0, 0.0, 300.0]);
+    assert_eq!(sweep.stations[0].captures.len(), 2);
+    assert_eq!(sweep.stations[0].captures[1].step_mm, Some(0.5));
+    check_file("units-below.csv", table, (2, 0), 0, [562.4, -110.2, 139.4]);
+    // The row of dots is said to be left out.
+    let plate = check_file("plate-paper.txt", table, (3, 3), 1, [170.208, 4.1677, 102.357]);
+    assert_eq!(plate.stations[2].label, "17");
+    let groups = check_file("two-groups.ls", Kind::FanucProgram, (1, 0), 0, [100.0, -20.0, 30.0]);
+    assert!(groups.notes.contains(&Note::OtherGroups { num_poses: 1 }));
+    assert!(groups.notes.contains(&Note::JointPoses { num_poses: 1 }));
+    // In the work object, a quarter turn about z.
+    check_file("work-object.mod", Kind::AbbModule, (2, 0), 0, [100.0, 500.0, 350.0]);
+    // A relative move is no position.
+    check_file("inline.src", Kind::KukaProgram, (2, 0), 1, [500.1, -20.5, 300.0]);
+    let named = check_file("waypoints.json", Kind::UrScript, (2, 0), 0, [500.0, 100.0, 300.0]);
+    assert_eq!(named.stations[1].label, "B");
+    check_file("matrices.json", Kind::Yaml, (2, 0), 0, [500.0, 100.0, 300.0]);
+    check_file("flat.yaml", Kind::Yaml, (3, 0), 0, [500.0, 0.0, 300.0]);
+}
+
+mod command {
+    //! The same on the command line.
+
+    use std::path::Path;
+    use std::process::{Command, Output};
+
+    use super::data;
+
+    fn handeye(args: &[&str]) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_handeye"))
+            .args(args)
+            .current_dir(env!("CARGO_MANIFEST_DIR"))
+            .output()
+            .expect("the binary starts")
+    }
+
+    #[track_caller]
+    fn check(args: &[&str], status: i32, fragments: &[&str]) {
+        let output = handeye(args);
+        let said = [output.stdout, output.stderr].concat();
+        let said = String::from_utf8(said).expect("UTF-8");
+        assert_eq!(output.status.code(), Some(status), "{args:?}: {said}");
+        if status != 0 {
+            assert_eq!(said.trim_end().lines().count(), 1, "{said}");
+        }
+        for fragment in fragments {
+            assert!(said.contains(fragment), "{fragment:?} is not in {said:?}");
+        }
+    }
+
+    fn text(path: &Path) -> String {
+        path.to_str().expect("UTF-8").to_owned()
+    }
+
+    #[test]
+    fn a_table_of_the_paper_becomes_a_session_that_solves() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (table, out) = (text(&data("printed-markdown.md")), text(&folder.path().join("table.json")));
+        let import = ["import", table.as_str(), "--out", out.as_str()];
+        check(&import, 2, &["--radius-mm"]);
+        let with_radius = [&import[..], &["--radius-mm", "30"]].concat();
+        check(&with_radius, 0, &["printed table, 5 poses, 5 ", "quaternion w x y z", "5 stations, 5 captures"]);
+        check(&with_radius, 2, &["--force"]);
+        check(&["solve", &out, "--paper-tables"], 0, &["RMS 0.309 mm", "about (328.6, -48.2, 137.3)"]);
+        check(&["import", &table, "--append-to", &out, "--out", &out], 0, &["10 stations"]);
+    }
+
+    #[test]
+    fn what_cannot_be_read_is_refused_or_skipped_by_name() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (table, out) = (folder.path().join("bad.csv"), text(&folder.path().join("out.json")));
+        std::fs::write(&table, "x,y,z,w,p,r\n1,2,300,4,5,60\n1,2,oops,4,5,6\n9,8,700,6,5,40\n").expect("written");
+        let import = ["import", &text(&table), "--out", &out, "--target", "point"];
+        check(&import, 2, &["line 3, column 5: found oops", "--skip-problems"]);
+        let skipping = [&import[..], &["--skip-problems", "--notation", "kuka-abc"]].concat();
+        check(&skipping, 0, &["left out: bad.csv, line 3", "KUKA A B C", "2 stations"]);
+        check(&["import", "no-such.csv", "--out", "x.json"], 2, &["no-such.csv"]);
+        check(&["import", "LICENSE-MIT", "--out", "x.json"], 2, &["LICENSE-MIT: found"]);
+        check(&["import", "a", "--out", "b", "--columns", "x,y,what"], 2, &["found what"]);
+    }
+
+    #[test]
+    fn a_session_goes_out_and_comes_back() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (poses, profiles) = (text(&folder.path().join("poses.csv")), text(&folder.path().join("profiles")));
+        let sample = "sample_sessions/few-rotations.json";
+        let semicolons = ["--separator", "semicolon", "--decimal-comma"];
+        let export = [&["export", sample, "--poses", &poses, "--profiles", &profiles], &semicolons[..]].concat();
+        check(&export, 0, &["poses", "profiles"]);
+        check(&export, 2, &["poses.csv", "overwrite"]);
+        let out = text(&folder.path().join("again.json"));
+        check(&["import", &poses, &profiles, "--out", &out, "--radius-mm", "15"], 0, &["decimal comma"]);
+        let (found, expected) =
+            [out.as_str(), sample].map(|file| handeye(&["solve", file, "--method", "ball-bundle"]).stdout).into();
+        let answer = |text: Vec<u8>| {
+            let text = String::from_utf8(text).expect("UTF-8");
+            text.lines().find(|line| line.contains("scatter")).map(str::to_owned)
+        };
+        assert_eq!(answer(found), answer(expected));
+    }
 }

@@ -4,7 +4,7 @@ use crate::geometry::PoseNotation;
 use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
 use crate::watch::Cancelled;
 
-use super::gather::{Gathered, RawPose};
+use super::gather::{Gathered, OwnFrames, RawPose};
 use super::program::{Frames, Unknown, head, show};
 use super::read::Progress;
 use super::scan::Scanner;
@@ -75,24 +75,17 @@ pub(super) fn read(
             continue;
         }
         let numbers = position.coordinates.map(Option::unwrap_or_default);
-        let (is_in_base, is_of_flange) = (position.user_frame == "0", position.tool == "0");
-        if !is_in_base {
+        let frames = OwnFrames { is_in_base: position.user_frame == "0", is_of_flange: position.tool == "0" };
+        if !frames.is_in_base {
             unknown.frame(&format!("UFRAME {}", position.user_frame));
         }
-        if !is_of_flange {
+        if !frames.is_of_flange {
             unknown.tool(&format!("UTOOL {}", position.tool));
         }
         show(preview, at.0, label, &numbers);
         gathered.take(
             &source.name,
-            &RawPose {
-                at,
-                label: Some(label.into()),
-                numbers: &numbers,
-                is_in_base,
-                is_of_flange,
-                ..RawPose::default()
-            },
+            &RawPose { at, label: Some(label.into()), numbers: &numbers, frames, ..RawPose::default() },
         );
     }
     unknown.note(gathered);

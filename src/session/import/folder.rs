@@ -88,7 +88,7 @@ fn list(folder: &Path, root: &Path, depth: usize, files: &mut Vec<(PathBuf, Stri
 }
 
 /// Sorts `p2` before `p10`: text and numbers in turn.
-pub(super) fn natural_key(name: &str) -> Vec<(String, u64)> {
+pub(super) fn natural_key(name: &str) -> Vec<(String, Option<u64>)> {
     let mut key = Vec::new();
     let mut rest = name;
     while !rest.is_empty() {
@@ -96,7 +96,7 @@ pub(super) fn natural_key(name: &str) -> Vec<(String, u64)> {
         let (text, after) = rest.split_at(digits_at);
         let digits_end = after.find(|c: char| !c.is_ascii_digit()).unwrap_or(after.len());
         let (digits, after) = after.split_at(digits_end);
-        key.push((text.to_lowercase(), digits.parse().unwrap_or(u64::MAX)));
+        key.push((text.to_lowercase(), digits.parse().ok()));
         rest = after;
     }
     key

@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::sync::Arc;
 
 use crate::calibrate::SideChoice;
@@ -40,9 +42,16 @@ pub(super) struct RawPose<'t> {
     pub profile: Option<&'t str>,
     /// Whether it is a further capture of the station before, if that has the same label.
     pub may_continue: bool,
-    /// Whether its source says that it is in the base, whatever the user frame of the others.
+    /// What its source says of it beside the others.
+    pub frames: OwnFrames,
+}
+
+/// What the source of a pose says of its frames, where that is not what it says of all poses.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct OwnFrames {
+    /// It is in the base, whatever the user frame of the others.
     pub is_in_base: bool,
-    /// Whether its source says that it is the flange's, whatever the tool of the others.
+    /// It is the flange's, whatever the tool of the others.
     pub is_of_flange: bool,
 }
 
@@ -67,8 +76,9 @@ pub(super) struct Gathered {
     notation: PoseNotation,
     base_from_user: Option<Transform<Base, Base>>,
     pub no_profile: Arc<Profile>,
-    /// How often a label was wanted.
-    labels: HashMap<String, usize>,
+    /// How often a label was wanted, by its hash: for a session of many poses the labels would be there twice. Two labels
+    /// of one hash would only cost one of them a number.
+    labels: HashMap<u64, u32>,
     num_poses: usize,
     num_normalised: usize,
     num_points: usize,
@@ -144,11 +154,9 @@ impl Gathered {
     }
 
     fn capture(&mut self, raw: &RawPose<'_>) -> Result<Capture, (String, String)> {
-        let notation = match raw.is_of_flange {
-            true => PoseNotation { flange_from_tcp: None, ..self.notation },
-            false => self.notation,
-        };
-        let base_from_user = self.base_from_user.filter(|_| !raw.is_in_base);
+        let own_tool = self.notation.flange_from_tcp.filter(|_| !raw.frames.is_of_flange);
+        let notation = PoseNotation { flange_from_tcp: own_tool, ..self.notation };
+        let base_from_user = self.base_from_user.filter(|_| !raw.frames.is_in_base);
         let user_from_flange = notation.base_from_flange(raw.numbers).map_err(|problem| not_a_pose(&problem))?;
         let base_from_flange = match &base_from_user {
             Some(base_from_user) => *base_from_user * user_from_flange,
@@ -198,7 +206,7 @@ impl Gathered {
                 last.captures.push(capture);
             }
         } else {
-            let label = self.free_label(wanted.unwrap_or_else(|| (self.stations.len() + 1).to_string()));
+            let label = self.free_label(&wanted.unwrap_or_else(|| (self.stations.len() + 1).to_string()));
             self.stations.push(Station {
                 label,
                 enabled: !raw.is_disabled,
@@ -223,20 +231,24 @@ impl Gathered {
     }
 
     /// The label, with a number behind it where another station has it.
-    fn free_label(&mut self, wanted: String) -> String {
-        if !self.labels.contains_key(&wanted) {
-            self.labels.insert(wanted.clone(), 1);
-            return wanted;
-        }
+    fn free_label(&mut self, wanted: &str) -> String {
+        let mut label = wanted.to_owned();
         loop {
-            let times = self.labels.entry(wanted.clone()).or_insert(1);
-            *times += 1;
-            let numbered = format!("{wanted} ({times})");
-            if !self.labels.contains_key(&numbered) {
-                self.labels.insert(numbered.clone(), 1);
-                return numbered;
+            if let Entry::Vacant(entry) = self.labels.entry(hash(&label)) {
+                entry.insert(1);
+                return label;
             }
+            let times = self.labels.entry(hash(wanted)).or_insert(1);
+            *times += 1;
+            label = format!("{wanted} ({times})");
         }
+    }
+
+    /// Makes room for the stations of a text of so many rows.
+    pub fn reserve(&mut self, num_rows: usize, num_bytes: usize) {
+        /// No pose is shorter; a text of many short lines gets no more room than it could fill.
+        const MIN_POSE_BYTES: usize = 24;
+        self.stations.reserve_exact(num_rows.min(num_bytes / MIN_POSE_BYTES).min(MAX_POSES));
     }
 
     /// Notes what all poses together say, when every source is read.
@@ -245,6 +257,12 @@ impl Gathered {
             self.notes.push(Note::QuaternionsNormalised { num_poses: self.num_normalised });
         }
     }
+}
+
+fn hash(label: &str) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    label.hash(&mut hasher);
+    hasher.finish()
 }
 
 fn user_frame(numbers: &[f64; 6], notation: &PoseNotation) -> Option<Transform<Base, Base>> {

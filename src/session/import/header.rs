@@ -155,7 +155,7 @@ fn words(name: &str) -> Vec<Word> {
 
 /// The roles of the columns that a header names, and what else it says; `None` for the cells that it does not explain.
 ///
-/// `notation_id` settles what several makers name alike.
+/// `convention` settles what several makers name alike.
 pub(super) fn roles(cells: &[&str], convention: &'static PoseConvention) -> (Vec<Option<Role>>, Said) {
     let named: Vec<(Vec<Word>, Option<String>)> = cells
         .iter()

@@ -7,7 +7,7 @@ use crate::geometry::PoseNotation;
 use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
 use crate::watch::Cancelled;
 
-use super::gather::{Gathered, RawPose};
+use super::gather::{Gathered, OwnFrames, RawPose};
 use super::program::{Frames, Unknown, head, show};
 use super::read::Progress;
 use super::scan::Scanner;
@@ -180,8 +180,7 @@ pub(super) fn read(
                 at,
                 label: label.map(Cow::Borrowed),
                 numbers: &numbers,
-                is_in_base: base == Some(0.0),
-                is_of_flange: tool == Some(0.0),
+                frames: OwnFrames { is_in_base: base == Some(0.0), is_of_flange: tool == Some(0.0) },
                 ..RawPose::default()
             },
         );

@@ -70,7 +70,7 @@ fn by_key(keys: &[ProfileKey], names: &[&str]) -> Vec<Option<(usize, usize)>> {
         place_of.entry(key.name.replace('\\', "/").to_lowercase()).or_insert(place);
         place_of.entry(stem(&key.name).to_lowercase()).or_insert(place);
     }
-    let number_of = |name: &str| numbers(stem(name)).last().map(|number| number.to_string());
+    let number_of = |name: &str| numbers(stem(name)).last().map(u64::to_string);
     names
         .iter()
         .map(|name| {
@@ -80,16 +80,9 @@ fn by_key(keys: &[ProfileKey], names: &[&str]) -> Vec<Option<(usize, usize)>> {
         .collect()
 }
 
-/// The numbers in a name, in order; those of its ending are none.
+/// The numbers in a name, in order.
 fn numbers(name: &str) -> Vec<u64> {
-    let mut numbers: Vec<u64> = Vec::new();
-    for (text, number) in natural_key(name) {
-        if number != u64::MAX {
-            numbers.push(number);
-        }
-        let _ = text;
-    }
-    numbers
+    natural_key(name).into_iter().filter_map(|(_, number)| number).collect()
 }
 
 fn by_number(stations: &[Station], names: &[&str]) -> Vec<Option<(usize, usize)>> {

@@ -114,14 +114,12 @@ pub(super) fn find(text: &str) -> Option<Tables> {
             column += line[counted..byte].chars().count();
             counted = byte;
             let at = (line_number, column);
-            let slot = match table.rows.last().and_then(|row| free_slot(row, slot)) {
-                Some(slot) => slot,
-                None => {
-                    let number = leading_number(line);
-                    table.begin(Row { at, number, values: [f64::NAN; NUM_SLOTS], bad: None });
-                    slot
-                }
-            };
+            let free = table.rows.last().and_then(|row| free_slot(row, slot));
+            if free.is_none() {
+                let number = leading_number(line);
+                table.begin(Row { at, number, values: [f64::NAN; NUM_SLOTS], bad: None });
+            }
+            let slot = free.unwrap_or(slot);
             if let Some(row) = table.rows.last_mut() {
                 row.values[slot] = number(value_text, false).unwrap_or(f64::INFINITY);
                 if row.values[slot].is_infinite() && row.bad.is_none() {
@@ -175,7 +173,7 @@ fn assignments(line: &str) -> impl Iterator<Item = (usize, usize, &str)> {
     let mut from = 0;
     std::iter::from_fn(move || {
         loop {
-            let at = from + line.get(from..)?.find(['=', '='])?;
+            let at = from + line.get(from..)?.find(['=', '\u{ff1d}'])?;
             let sign_len = line[at..].chars().next().map_or(1, char::len_utf8);
             let before = line[from..at].trim_end();
             let name_len: usize = before.chars().rev().take_while(|c| is_name_char(*c)).map(char::len_utf8).sum();

@@ -66,14 +66,8 @@ pub(super) fn recognise(
     if let Some(tables) = printed::find(text) {
         return Some(Recognised::Printed(Box::new(tables)));
     }
-    let programs: [(Kind, fn(&str) -> bool); 4] = [
-        (Kind::FanucProgram, fanuc::is_program),
-        (Kind::AbbModule, abb::is_program),
-        (Kind::KukaProgram, kuka::is_program),
-        (Kind::UrScript, ur::is_script),
-    ];
-    if let Some((kind, _)) = programs.iter().find(|(_, is_one)| is_one(text)) {
-        return Some(Recognised::Program(*kind));
+    if let Some(kind) = program_kind(text) {
+        return Some(Recognised::Program(kind));
     }
     let document = yaml::is_yaml(name, text).then(|| yaml::document(text)).flatten();
     let layout = match &document {
@@ -87,6 +81,18 @@ pub(super) fn recognise(
         return Some(Recognised::Table(kind, Box::new(layout), columns));
     }
     document.map(|document| Recognised::Yaml(Box::new(document)))
+}
+
+fn program_kind(text: &str) -> Option<Kind> {
+    if fanuc::is_program(text) {
+        Some(Kind::FanucProgram)
+    } else if abb::is_program(text) {
+        Some(Kind::AbbModule)
+    } else if kuka::is_program(text) {
+        Some(Kind::KukaProgram)
+    } else {
+        ur::is_script(text).then_some(Kind::UrScript)
+    }
 }
 
 /// Whether rows and columns are poses or profiles.

@@ -203,18 +203,15 @@ pub(super) fn columns(layout: &Layout, options: &ImportOptions, notation: &PoseN
             }
         }
     }
-    let roles = match &options.roles {
-        Some(roles) => {
-            let mut roles = roles.clone();
-            roles.resize(named.len().max(roles.len()), Role::Ignore);
-            roles
+    let roles = if let Some(roles) = &options.roles {
+        let mut roles = roles.clone();
+        roles.resize(named.len().max(roles.len()), Role::Ignore);
+        roles
+    } else {
+        if !is_complete(&named) {
+            fill_by_values(&mut named, layout, &mut said);
         }
-        None => {
-            if !is_complete(&named) {
-                fill_by_values(&mut named, layout, &mut said);
-            }
-            named.iter().map(|role| role.unwrap_or(Role::Ignore)).collect()
-        }
+        named.iter().map(|role| role.unwrap_or(Role::Ignore)).collect()
     };
     if said.orientation.is_none() && roles.contains(&Role::Orientation(3)) {
         said.orientation = Some(OrientationForm::QuaternionWxyz);
@@ -261,10 +258,9 @@ fn fill_by_values(roles: &mut [Option<Role>], layout: &Layout, said: &mut Said) 
     // A row of a pose and its point: 6 or 7 numbers, and 0, 2 or 3 more; with a name or a time in front of it one more.
     let lead = match free.len() {
         6 => 0,
-        7 => usize::from(!quaternion_at(&free, 3)),
+        7 | 10 => usize::from(!quaternion_at(&free, 3)),
         8 => usize::from(quaternion_at(&free, 4) || first_is_label(&free)),
         9 => usize::from(!quaternion_at(&free, 3) && first_is_label(&free) && quaternion_at(&free, 4)),
-        10 => usize::from(!quaternion_at(&free, 3)),
         11 => 1,
         _ => return,
     };
@@ -390,6 +386,7 @@ pub(super) fn read(
         Some(header) if columns.has_header => header.clone(),
         _ => (1..=columns.roles.len()).map(|column| column.to_string()).collect(),
     };
+    gathered.reserve(records(text).count(), text.len());
     let mut cells = Vec::new();
     let mut numbers = Vec::with_capacity(notation.num_numbers());
     for (idx, record) in records(text).skip_while(|record| record.line < layout.first_row_line).enumerate() {

@@ -131,7 +131,7 @@ pub(super) fn split<'t>(record: &'t str, separator: Separator, cells: &mut Vec<C
         return split_at(inner, start, |c| c == '|', cells);
     }
     match separator {
-        Separator::Comma => split_at(record, 0, |c| c == ',' || c == ',', cells),
+        Separator::Comma => split_at(record, 0, |c| matches!(c, ',' | '\u{ff0c}'), cells),
         Separator::Semicolon => split_at(record, 0, |c| c == ';', cells),
         Separator::Tab => split_at(record, 0, |c| c == '\t', cells),
         Separator::Blanks => {
@@ -255,8 +255,8 @@ mod tests {
             ("12.5", false, Some(12.5)),
             ("-1e-3", false, Some(-0.001)),
             ("−54.903", false, Some(-54.903)),
-            ("−5.5", false, Some(-5.5)),
-            ("12.5", false, Some(12.5)),
+            ("\u{ff0d}5.5", false, Some(-5.5)),
+            ("\u{ff11}\u{ff12}\u{ff0e}5", false, Some(12.5)),
             ("170. 208", false, Some(170.208)),
             ("- 106. 129", false, Some(-106.129)),
             ("2 3", false, None),
@@ -268,7 +268,7 @@ mod tests {
             ("12.5 mm", false, Some(12.5)),
             ("90°", false, Some(90.0)),
             ("$0.5$", false, Some(0.5)),
-            ("1 234.5", false, Some(1234.5)),
+            ("1\u{2009}234.5", false, Some(1234.5)),
             ("nan", false, None),
             ("inf", false, None),
             ("1e999", false, None),
