@@ -386,9 +386,9 @@ pub fn left_out(num_problems: usize) -> String {
 #[must_use]
 pub fn problems(num_listed: usize, num_problems: usize) -> String {
     if num_listed < num_problems {
-        format!("{num_problems} left out, the first {num_listed} of them:")
+        format!("{num_problems} left out, the first {num_listed} of them listed")
     } else {
-        format!("{num_problems} left out:")
+        left_out(num_problems)
     }
 }
 
