@@ -142,13 +142,11 @@ pub const QUATERNIONS: &str = "As a quaternion";
 /// Heading.
 pub const PREVIEW: &str = "What each column means";
 /// Heading.
-pub const NOTES: &str = "To know";
+pub const NOTES: &str = "Remarks";
 /// Where no station came of the text.
 pub const NOTHING: &str = "nothing could be read yet";
 /// Head of the column of line numbers.
 pub const LINE: &str = "line";
-/// Heading.
-pub const LEFT_OUT: &str = "Left out";
 /// Heading where nothing could be read.
 pub const BEGINNING: &str = "How the text begins";
 /// Where nothing was recognised.
