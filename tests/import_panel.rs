@@ -259,8 +259,9 @@ fn what_is_not_recognised_says_what_can_be_read_and_lets_the_form_be_chosen() {
 
 #[test]
 fn every_kind_of_outcome_is_drawn_at_every_size() {
-    let profile: String = (0..40).map(|idx| format!("{:.2},{:.3}\n", f64::from(idx) * 0.05, 1.0)).collect();
-    let wide: String = TABLE.lines().map(|line| format!("{line},{}\n", "0,".repeat(20))).collect();
+    let lines = |lines: Vec<String>| lines.join("\n");
+    let profile = lines((0..40).map(|idx| format!("{:.2},1.0", f64::from(idx) * 0.05)).collect());
+    let wide = lines(TABLE.lines().map(|line| format!("{line},{}", "0,".repeat(20))).collect());
     for text in [TABLE, PRINTED, "", "prose", &profile, &wide, samples::ALL[0].json] {
         for size in [SIZE, [1024.0, 768.0], [960.0, 640.0]] {
             let harness = Bench::with(text).harness_of_size(size);

@@ -142,13 +142,11 @@ pub const QUATERNIONS: &str = "As a quaternion";
 /// Heading.
 pub const PREVIEW: &str = "What each column means";
 /// Heading.
-pub const NOTES: &str = "To know";
+pub const NOTES: &str = "Remarks";
 /// Where no station came of the text.
 pub const NOTHING: &str = "nothing could be read yet";
 /// Head of the column of line numbers.
 pub const LINE: &str = "line";
-/// Heading.
-pub const LEFT_OUT: &str = "Left out";
 /// Heading where nothing could be read.
 pub const BEGINNING: &str = "How the text begins";
 /// Where nothing was recognised.
@@ -386,9 +384,9 @@ pub fn left_out(num_problems: usize) -> String {
 #[must_use]
 pub fn problems(num_listed: usize, num_problems: usize) -> String {
     if num_listed < num_problems {
-        format!("{num_problems} left out, the first {num_listed} of them:")
+        format!("{num_problems} left out, the first {num_listed} of them listed")
     } else {
-        format!("{num_problems} left out:")
+        left_out(num_problems)
     }
 }
 

@@ -8,6 +8,8 @@ use crate::ui::{theme, widgets};
 
 /// Width of the labels, points.
 const LABEL_WIDTH: f32 = 104.0;
+/// Room for a mark before a sentence, points.
+const MARK_WIDTH: f32 = 12.0;
 /// Height of a line below a row, points.
 const REMARK_HEIGHT: f32 = 16.0;
 /// Height of a row with a control, points.
@@ -169,7 +171,9 @@ pub fn remark(ui: &mut Ui, text: &str) {
 /// A sentence with a mark before it, wrapped beside it.
 pub fn marked(ui: &mut Ui, mark: &str, color: egui::Color32, sentence: &str) {
     ui.horizontal_top(|ui| {
-        ui.label(egui::RichText::new(mark).color(color));
+        let (rect, _) = ui.allocate_exact_size(vec2(MARK_WIDTH, REMARK_HEIGHT), Sense::hover());
+        let in_rect = UiBuilder::new().max_rect(rect).layout(Layout::left_to_right(Align::Min));
+        ui.new_child(in_rect).label(egui::RichText::new(mark).color(color));
         ui.add(Label::new(widgets::number_text(sentence)).wrap());
     });
 }

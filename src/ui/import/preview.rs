@@ -199,12 +199,13 @@ fn cells(
 
 /// What was left out and what else to know.
 fn remarks(ui: &mut Ui, imported: &Imported, height: f32) {
-    let count = words::problems(imported.problems.len(), imported.num_problems);
-    let (title, count) =
-        if imported.num_problems > 0 { (words::LEFT_OUT, count) } else { (words::NOTES, String::new()) };
+    let count = match imported.num_problems {
+        0 => String::new(),
+        num_problems => words::problems(imported.problems.len(), num_problems),
+    };
     card_with_height(
         ui,
-        title,
+        words::NOTES,
         height,
         |ui| {
             ui.label(theme::dim(ui, count).small());
