@@ -190,7 +190,7 @@ fn as_saved(session: &Session) -> Session {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
     fn any_edits_undone_are_the_start_and_redone_the_end(
