@@ -1,5 +1,6 @@
 //! Edits of any kind on any session: all or nothing, undone and redone exactly, and always fit to be saved.
 #![expect(clippy::expect_used, reason = "a test that finds nothing to check must fail")]
+#![expect(clippy::cast_precision_loss, reason = "a handful of stations")]
 
 use std::collections::HashSet;
 use std::sync::Arc;
