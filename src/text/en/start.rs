@@ -93,10 +93,9 @@ pub const BALL_RADIUS_STD: &str = "radius, 1σ";
 /// Hint in the empty field: nothing is stated.
 pub const EXACT: &str = "exact";
 /// Leads to the page where it is changed.
-pub const CHANGE_CONVENTION: &str = "change in Poses";
+pub const CHANGE_CONVENTION: &str = "in Poses";
 /// What it leads to.
-pub const CHANGE_CONVENTION_HINT: &str =
-    "The convention says how the poses' numbers are read, so it is changed beside them";
+pub const CHANGE_CONVENTION_HINT: &str = "Changed in Poses: the convention says how the numbers there are read";
 /// Kind of target.
 pub const BALL: &str = "ball";
 /// Kind of target.

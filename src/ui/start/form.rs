@@ -181,7 +181,8 @@ fn choice<T: Copy + PartialEq>(ui: &mut Ui, name: &str, present: T, choices: &[(
     let mut chosen = present;
     let shown = choices.iter().find(|(_, value)| *value == present).map_or("", |(shown, _)| *shown);
     ui.spacing_mut().button_padding.y = 2.0;
-    let combo = ComboBox::from_id_salt(name).selected_text(shown).width(TEXT_WIDTH - 44.0).show_ui(ui, |ui| {
+    let width = (ui.available_width() * 0.5).min(TEXT_WIDTH - 44.0);
+    let combo = ComboBox::from_id_salt(name).selected_text(shown).width(width).show_ui(ui, |ui| {
         for (shown, value) in choices {
             ui.selectable_value(&mut chosen, *value, *shown);
         }
