@@ -70,7 +70,8 @@ impl Grid<'_> {
             }
             let is_own = has_cell(session, row, column);
             let waiting = sheet.pending.get(session, place, column).filter(|_| is_own);
-            let is_faded = !station.enabled || !is_own;
+            // The pose of a folded sweep is that of its first capture: no cell of its own, but a figure like any other.
+            let is_faded = !station.enabled || !is_own && matches!(row, Row::Capture(_));
             let color = if is_faded { palette.text_dim } else { palette.text };
             let mut tip = waiting.map(|waiting| waiting.reason.clone());
             let text = match (waiting, column) {
