@@ -32,7 +32,7 @@ impl Progress<'_> {
     }
 }
 
-/// Reads sources; see [`super::read`].
+/// Reads sources; see [`super::read()`].
 pub(super) fn read(
     sources: &[Source],
     options: &ImportOptions,

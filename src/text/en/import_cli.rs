@@ -28,7 +28,7 @@ pub const fn kind_name(kind: Kind) -> &'static str {
 #[must_use]
 pub fn part_line(part: &Part) -> String {
     let poses = (part.num_poses > 0).then(|| count(part.num_poses, "pose"));
-    let readings = (part.num_readings > 0).then(|| count(part.num_readings, "profile or point"));
+    let readings = (part.num_readings > 0).then(|| count(part.num_readings, "reading"));
     let gave: Vec<String> = poses.into_iter().chain(readings).collect();
     let gave = if gave.is_empty() { String::new() } else { format!(", {}", gave.join(", ")) };
     format!("{}: {}{gave}\n", part.name, kind_name(part.kind))

@@ -284,6 +284,10 @@ fn flat(entries: &[(Box<str>, Item)]) -> Option<(Vec<f64>, Said)> {
     numbers.iter().all(|number| number.is_finite()).then_some((numbers, said))
 }
 
+fn is_of_point(key: &str) -> bool {
+    matches!(plain(key).as_str(), "x" | "y" | "z" | "i" | "intensity")
+}
+
 /// Points: two lists `x` and `z`, or a list of pairs, triples or `{x: …, z: …}`.
 fn points(item: &Item, name: Option<&str>) -> Option<Points> {
     let mut points = Points { at: item.at(), name: name.map(str::to_owned), x: Vec::new(), z: Vec::new() };
@@ -309,6 +313,8 @@ fn points(item: &Item, name: Option<&str>) -> Option<Points> {
                         [x, z] | [x, _, z] => (*x, *z),
                         _ => return None,
                     },
+                    // With other keys it is a pose.
+                    Node::Map(entries) if !entries.iter().all(|(key, _)| is_of_point(key)) => return None,
                     Node::Map(entries) => match (&entry(entries, &["x"])?.1.node, &entry(entries, &["z"])?.1.node) {
                         (Node::Number(x), Node::Number(z)) => (*x, *z),
                         _ => return None,
