@@ -394,7 +394,7 @@ fn sweeps_fold_into_their_station_and_open_for_editing() {
     click(&mut table, &words::fold_station(&label));
     assert!(table.query_by_label(&capture).is_none());
     click(&mut table, words::UNFOLD_ALL);
-    table.get_by_label(&capture);
+    table.get_by_label(&format!("x of {}", words::capture_name("1", 1)));
 }
 
 #[test]

@@ -216,6 +216,8 @@ fn another_session_is_not_opened_over_unsaved_changes_unasked() {
     );
     click(&mut harness, shell_words::CANCEL);
     assert!(!is_enabled(&harness, 1), "cancelling changes nothing");
+    harness.get_by_label(&other).scroll_to_me();
+    settle(&mut harness);
     harness.get_by_label(&other).click();
     settle(&mut harness);
     click(&mut harness, shell_words::DISCARD);

@@ -82,6 +82,7 @@ impl Workbench {
         self.forget_errors();
         self.conflict = None;
         self.looking.cancel();
+        self.looks_again = false;
         self.document = Some(document);
         self.keep_copy();
         self.forget_results();
@@ -295,7 +296,12 @@ impl Workbench {
     pub(super) fn look_at_file(&mut self) {
         let Some(document) = &self.document else { return };
         let (Some(path), Some(known)) = (document.path.clone(), document.stamp) else { return };
-        if self.looking.is_running() || self.is_saving() || self.loading.is_running() {
+        if self.is_saving() || self.loading.is_running() {
+            return;
+        }
+        // The one under way may have been past the file already; a second one beside it helps nobody on a slow disk.
+        if self.looking.is_running() {
+            self.looks_again = true;
             return;
         }
         let document_id = document.id;
@@ -303,6 +309,9 @@ impl Workbench {
     }
 
     pub(super) fn take_look(&mut self, outcome: &JobOutcome<Look>) {
+        if std::mem::take(&mut self.looks_again) {
+            self.look_at_file();
+        }
         // A look that broke down is none; saving looks again.
         let JobOutcome::Done(look) = outcome else { return };
         let document = self.document.as_mut().filter(|document| document.id == look.document_id);

@@ -85,6 +85,8 @@ pub struct Workbench {
     /// A save that met a file changed by another program; the user is to say what becomes of it.
     conflict: Option<PathBuf>,
     looking: Slot<Look>,
+    /// Whether the file is to be looked at once more after that.
+    looks_again: bool,
     recovery: Option<Recovery>,
     recoverable: Vec<Recoverable>,
     solving: Slot<Result<Results, Cancelled>>,
@@ -114,6 +116,7 @@ impl Workbench {
             save_queue: VecDeque::new(),
             conflict: None,
             looking: Slot::default(),
+            looks_again: false,
             recovery: None,
             recoverable: Vec::new(),
             solving: Slot::default(),

@@ -104,6 +104,8 @@ pub const NOTHING_TO_COMPARE: &str =
     "A second method with a result is needed to compare; the cards above say what each method lacks.";
 /// Title of the published card.
 pub const AS_PUBLISHED: &str = "As published";
+/// In place of a caption that cannot be shown.
+pub const CAPTION_IN_OTHER_LETTERS: &str = "its caption is in letters that this window does not have";
 /// Published card: printed error.
 pub const PRINTED_ERROR: &str = "printed error / mm";
 /// Published card: recomputed error.

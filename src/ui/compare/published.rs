@@ -24,8 +24,11 @@ pub fn show(ui: &mut Ui, table: &PublishedTable) {
                 };
             }
             ui.add_space(12.0);
-            let caption = theme::dim(ui, table.caption.as_str());
-            ui.add(egui::Label::new(caption).truncate()).on_hover_text(&table.caption);
+            // The paper's own language is kept in the file; letters that the window has none of would be boxes.
+            let font = egui::TextStyle::Body.resolve(ui.style());
+            let has_letters = ui.fonts_mut(|fonts| fonts.has_glyphs(&font, &table.caption));
+            let caption = if has_letters { table.caption.as_str() } else { text::CAPTION_IN_OTHER_LETTERS };
+            ui.add(egui::Label::new(theme::dim(ui, caption)).truncate()).on_hover_text(caption);
         });
     };
     widgets::card(ui, text::AS_PUBLISHED, right, |ui| {
