@@ -2,7 +2,7 @@
 //!
 //! A child process of this test edits and saves without end, and is killed in the middle of it. How often, and with what
 //! time between two recovery copies, can be set:
-//! `HANDEYE_KILLS=200 HANDEYE_RECOVERY_MS=3000 cargo test --release --test safety killed -- --nocapture`.
+//! `HANDEYE_KILLS=200 HANDEYE_RECOVERY_MS=3000 cargo test --test safety killed -- --nocapture`.
 #![expect(clippy::expect_used, reason = "a test that finds nothing to check must fail")]
 
 use std::fs;

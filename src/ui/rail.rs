@@ -9,7 +9,6 @@ use crate::text::methods::verdict_mark;
 use crate::text::shell as words;
 
 use super::actions::Action;
-use super::poses::model::num_stations_with_findings;
 use super::{Selection, theme};
 
 /// Height of a step, points: large enough for a gloved hand.
@@ -67,8 +66,15 @@ enum Mark {
     Bad(String),
 }
 
-/// Draws the rail.
-pub fn show(ui: &mut Ui, workbench: &Workbench, selection: &Selection, current: Step, actions: &mut Vec<Action>) {
+/// Draws the rail; what there is to remark of the poses is known to their table.
+pub fn show(
+    ui: &mut Ui,
+    workbench: &Workbench,
+    selection: &Selection,
+    num_pose_remarks: usize,
+    current: Step,
+    actions: &mut Vec<Action>,
+) {
     ui.spacing_mut().item_spacing.y = 0.0;
     ui.add_space(theme::GAP);
     for (idx, step) in Step::ALL.into_iter().enumerate() {
@@ -77,7 +83,7 @@ pub fn show(ui: &mut Ui, workbench: &Workbench, selection: &Selection, current: 
         response.widget_info(|| WidgetInfo::selected(Role::Tab, true, is_current, step.name()));
         let inner = Rect::from_min_max(rect.min + vec2(8.0, 2.0), rect.max - vec2(8.0, 2.0));
         paint_step(ui, inner, idx + 1, step, is_current, response.hovered() || response.has_focus());
-        paint_mark(ui, inner, &mark(workbench, selection, step));
+        paint_mark(ui, inner, &mark(workbench, selection, num_pose_remarks, step));
         if response.on_hover_text(step.hint()).clicked() {
             actions.push(Action::GoTo(step));
         }
@@ -112,7 +118,7 @@ fn paint_mark(ui: &Ui, rect: Rect, mark: &Mark) {
     ui.painter().text(rect.right_center() - vec2(12.0, 0.0), Align2::RIGHT_CENTER, text, font, color);
 }
 
-fn mark(workbench: &Workbench, selection: &Selection, step: Step) -> Mark {
+fn mark(workbench: &Workbench, selection: &Selection, num_pose_remarks: usize, step: Step) -> Mark {
     let (Some(document), Some(results)) = (workbench.document(), workbench.results()) else {
         return match (step, workbench.document()) {
             (Step::Session, Some(_)) => Mark::Fine("✔".to_owned()),
@@ -127,7 +133,7 @@ fn mark(workbench: &Workbench, selection: &Selection, step: Step) -> Mark {
     match step {
         Step::Session => Mark::Fine("✔".to_owned()),
         Step::Arcs => counted(super::poses::model::num_refused(&document.session, results)),
-        Step::Poses => counted(num_stations_with_findings(&document.session, results, selection.method)),
+        Step::Poses => counted(num_pose_remarks),
         Step::Compare => match results.method(selection.method).map(|result| &result.outcome) {
             Some(Ok(solution)) => {
                 let (verdict, _) = verdict_with(solution, workbench.current_diagnosis());

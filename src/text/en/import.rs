@@ -194,6 +194,8 @@ pub const NAME_MISSING: &str = "Give the session a name.";
 pub const NEEDED: &str = "! needed";
 /// Reason of a disabled button.
 pub const RADIUS_MISSING: &str = "Type the ball's radius in mm, for example 15.";
+/// Why there can be no new session yet.
+pub const RADIUS_UNUSABLE: &str = "Type a radius from 0.001 to 10 000 mm.";
 
 /// The forms, with what they look like.
 pub const FORMS: [(Kind, &str); 9] = [

@@ -1,11 +1,13 @@
 //! The preview as a window over the current step: settings at the left, the table at the right, what to make of it below.
 
+use std::sync::Arc;
+
 use egui::{Align, Context, Frame, Id, Key, Layout, Modal, Modifiers, ProgressBar, ScrollArea, Stroke, Ui, vec2};
 
 use crate::app::{Command, ImportDraft, ImportInto, Progress, Workbench};
-use crate::session::Target;
 use crate::session::import::{ImportError, ImportOptions, Imported};
 use crate::session::table::number::parse_number;
+use crate::session::{Edit, Reading, Session, SetupField, Target};
 use crate::text::import as words;
 use crate::text::shell as shell_words;
 use crate::ui::{theme, widgets};
@@ -65,6 +67,9 @@ impl ImportState {
             commands.push(Command::SetImportOptions(Box::new(options)));
         }
         self.form = Some(form);
+        if self.radius.is_empty() && has_only_points(outcome) {
+            USUAL_RADIUS_MM.clone_into(&mut self.radius);
+        }
     }
 
     /// What a new session is to be, or why it cannot be made yet.
@@ -74,15 +79,30 @@ impl ImportState {
             return Err(words::NAME_MISSING);
         }
         let target = match self.target {
-            TargetKind::Ball => {
-                let radius_mm = parse_number(&self.radius).ok().filter(|radius_mm| *radius_mm > 0.0);
-                Target::ball(radius_mm.ok_or(words::RADIUS_MISSING)?)
-            }
+            TargetKind::Ball => self.ball()?,
             TargetKind::RightAnglePlate => Target::RightAnglePlate,
             TargetKind::Point => Target::Point,
         };
         Ok(ImportInto::NewSession { name, target })
     }
+
+    /// The ball, or why its radius is none that a session can have.
+    fn ball(&self) -> Result<Target, &'static str> {
+        let target = Target::ball(parse_number(&self.radius).map_err(|_| words::RADIUS_MISSING)?);
+        let setup = Edit::Setup(SetupField::Target(target.clone()));
+        setup.apply(&Session::new(Target::Point)).map_err(|_| words::RADIUS_UNUSABLE)?;
+        Ok(target)
+    }
+}
+
+/// Points that are reduced already need no radius, but a session of a ball has one.
+const USUAL_RADIUS_MM: &str = "15";
+
+fn has_only_points(outcome: &Result<Arc<Imported>, ImportError>) -> bool {
+    outcome.as_ref().is_ok_and(|imported| {
+        let mut captures = imported.stations.iter().flat_map(|station| &station.captures).peekable();
+        captures.peek().is_some() && captures.all(|capture| matches!(capture.reading, Reading::Point(_)))
+    })
 }
 
 /// Shows the preview while there is one; what the user has set is remembered once it is made.
@@ -311,9 +331,9 @@ fn new_session_fields(ui: &mut Ui, state: &mut ImportState) {
         ui.label(theme::dim(ui, words::RADIUS));
         fields::text_field(ui, words::RADIUS_FIELD, "", &mut state.radius, 64.0);
         ui.label(theme::dim(ui, words::MM));
-        if parse_number(&state.radius).is_err() {
+        if let Err(reason) = state.ball() {
             let needed = egui::RichText::new(words::NEEDED).color(theme::palette(ui).warn);
-            ui.label(needed).on_hover_text(words::RADIUS_MISSING);
+            ui.label(needed).on_hover_text(reason);
         }
     }
 }

@@ -4,6 +4,7 @@ use std::collections::{BTreeSet, HashMap};
 
 use crate::app::Workbench;
 use crate::calibrate::{self, Method, Warning};
+use crate::session::Session;
 use crate::session::check::{self, Finding};
 use crate::text::finding_message;
 use crate::text::poses as words;
@@ -87,6 +88,12 @@ impl Checks {
                 add(label, Note { word, sentence: warning_message(warning), capture_idx: None });
             }
         }
+    }
+
+    /// Number of stations with something to look at; those that take no part are looked at by nobody.
+    #[must_use]
+    pub fn num_stations(&self, session: &Session) -> usize {
+        session.stations.iter().zip(&self.notes).filter(|(station, notes)| station.enabled && !notes.is_empty()).count()
     }
 
     /// What there is to look at in a station.

@@ -1,7 +1,5 @@
 //! What the results say of the stations, counted for the rail and told apart for the table.
 
-use std::collections::BTreeSet;
-
 use crate::app::Results;
 use crate::calibrate::{self, Method, Warning};
 use crate::session::Session;
@@ -41,14 +39,6 @@ pub fn num_refused(session: &Session, results: &Results) -> usize {
             matches!(results.measured.reading(station_idx, capture_idx), Some(calibrate::Reading::Refused(_)))
         })
         .count()
-}
-
-/// Number of enabled stations that the method warns of.
-#[must_use]
-pub fn num_stations_with_findings(session: &Session, results: &Results, method: Method) -> usize {
-    let labels: BTreeSet<&String> = station_warnings(results, method).flat_map(labels_of).collect();
-    let is_concerned = |station: &&crate::session::Station| station.enabled && labels.contains(&station.label);
-    session.stations.iter().filter(is_concerned).count()
 }
 
 /// Warnings about single stations; refused captures are counted from the readings, for all methods alike.

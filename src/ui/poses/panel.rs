@@ -2,7 +2,8 @@
 
 use egui::{Align, Id, Key, Label, Layout, Modifiers, Ui, UiBuilder, vec2};
 
-use crate::app::{Command, Document};
+use crate::app::{Command, Document, Workbench};
+use crate::calibrate::Method;
 use crate::session::Place;
 use crate::session::table::has_cell;
 use crate::text::conventions::poses_title;
@@ -32,6 +33,15 @@ pub struct PosesState {
     keyboard: Keyboard,
     /// The station and capture that the window looked at when the table last was drawn.
     seen: Option<Place>,
+}
+
+impl PosesState {
+    /// Number of stations to look at, and of texts that are not in the session, for the rail.
+    pub fn num_remarks(&mut self, workbench: &Workbench, method: Method) -> usize {
+        let Some(document) = workbench.document() else { return 0 };
+        self.checks.refresh(workbench, method);
+        self.checks.num_stations(&document.session) + self.sheet.pending.count(&document.session)
+    }
 }
 
 /// Draws the step.

@@ -237,7 +237,8 @@ impl Shell {
         }
         self.strip_of_file(ui, commands);
         Panel::left("rail").resizable(false).exact_size(RAIL_WIDTH).frame(surface).show(ui, |ui| {
-            rail::show(ui, &self.workbench, &self.selection, self.step, actions);
+            let num_pose_remarks = self.poses.num_remarks(&self.workbench, self.selection.method);
+            rail::show(ui, &self.workbench, &self.selection, num_pose_remarks, self.step, actions);
         });
         if self.persisted.inspector_open && self.workbench.document().is_some() {
             let beside = surface.inner_margin(Margin { left: 16, right: 8, top: 0, bottom: 0 });
