@@ -2,7 +2,7 @@
 //!
 //! An edit is applied to a copy; what could not be saved and opened again is refused, so the document is always valid.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::hash::BuildHasher;
 use std::path::Path;
 
@@ -158,9 +158,6 @@ pub enum EditRefusal {
         /// Why.
         problem: crate::geometry::notation::NotAPose,
     },
-    /// The target needs more than the stations say.
-    #[error("found stations that do not say which edge they saw, needed p or q for each before the target is a plate")]
-    EdgesMissing,
     /// A station without a pose and a reading.
     #[error("found station \"{label}\" without captures, needed a pose with what was measured there")]
     NoCaptures {
@@ -317,15 +314,14 @@ fn insert(session: &mut Session, at: usize, stations: &[Station]) -> Result<(), 
         return Err(EditRefusal::NoStationsHere);
     }
     let at = at.min(session.stations.len());
-    let mut taken: HashSet<String> = session.stations.iter().map(|station| station.label.clone()).collect();
+    let mut labels = Labels::of(session);
     let needs_edge = session.target == Target::RightAnglePlate;
     let mut added = stations.to_vec();
     for station in &mut added {
         check_station(station)?;
-        station.label = free_label(&station.label, &taken);
-        taken.insert(station.label.clone());
+        station.label = labels.claim(&station.label);
         if needs_edge {
-            station.edge.get_or_insert(Edge::P);
+            need_edge(station);
         }
     }
     if !added.is_empty() {
@@ -333,6 +329,14 @@ fn insert(session: &mut Session, at: usize, stations: &[Station]) -> Result<(), 
     }
     session.stations.splice(at..at, added);
     Ok(())
+}
+
+/// A station of a plate saw an edge. One that does not say which takes no part until somebody has looked.
+fn need_edge(station: &mut Station) {
+    if station.edge.is_none() {
+        station.edge = Some(Edge::P);
+        station.enabled = false;
+    }
 }
 
 /// A station from elsewhere, such as an import, is looked at as a whole.
@@ -355,11 +359,43 @@ pub fn free_label<S: BuildHasher>(wanted: &str, taken: &HashSet<String, S>) -> S
     if !taken.contains(wanted) {
         return wanted.to_owned();
     }
-    if let Ok(number) = wanted.parse::<u32>() {
-        let next = (number..=u32::MAX).map(|number| number.to_string()).find(|label| !taken.contains(label));
-        return next.unwrap_or_else(|| wanted.to_owned());
+    other_labels(wanted, 0).map(|(_, label)| label).find(|label| !taken.contains(label)).unwrap_or_default()
+}
+
+/// The labels to try in place of one that is taken, each with its number: the numbers after it if it is one, otherwise the
+/// label with a number behind it; from `first` on.
+fn other_labels(wanted: &str, first: u32) -> impl Iterator<Item = (u32, String)> {
+    let number = wanted.parse::<u32>().ok();
+    let next = number.map_or(u32::MAX, |number| number.saturating_add(1).max(first));
+    let numbers = number.into_iter().flat_map(move |_| next..u32::MAX).map(|number| (number, number.to_string()));
+    numbers.chain((first.max(2)..u32::MAX).map(move |number| (number, format!("{wanted} ({number})"))))
+}
+
+/// The labels of a session while stations are added to it: many that are taken cost no more than each its turn.
+struct Labels {
+    taken: HashSet<String>,
+    /// Where the search goes on: for numbers, under an empty name, and for each other label.
+    next: HashMap<String, u32>,
+}
+
+impl Labels {
+    fn of(session: &Session) -> Self {
+        Self { taken: session.stations.iter().map(|station| station.label.clone()).collect(), next: HashMap::new() }
     }
-    (2..=u32::MAX).map(|number| format!("{wanted} ({number})")).find(|label| !taken.contains(label)).unwrap_or_default()
+
+    /// The label itself, or another that is free; it is taken then.
+    fn claim(&mut self, wanted: &str) -> String {
+        if self.taken.insert(wanted.to_owned()) {
+            return wanted.to_owned();
+        }
+        let name = if wanted.parse::<u32>().is_ok() { "" } else { wanted };
+        let first = self.next.get(name).copied().unwrap_or_default();
+        let found = other_labels(wanted, first).find(|(_, label)| !self.taken.contains(label));
+        let (number, label) = found.unwrap_or_default();
+        self.next.insert(name.to_owned(), number.saturating_add(1));
+        self.taken.insert(label.clone());
+        label
+    }
 }
 
 /// What a paper printed is one row a station: with other stations it fits no more.
@@ -405,14 +441,13 @@ fn duplicate(session: &mut Session, rows: &[Row]) -> Result<(), EditRefusal> {
     check_rows(session, rows)?;
     // A station is copied as it was, also where some of its captures are copied as well.
     let before = session.stations.clone();
-    let mut taken: HashSet<String> = session.stations.iter().map(|station| station.label.clone()).collect();
+    let mut labels = Labels::of(session);
     for row in from_the_end(rows) {
         let Place { station_idx, capture_idx } = row.place();
         match row {
             Row::Station(_) => {
                 let mut copy = before[station_idx].clone();
-                copy.label = free_label(&copy.label, &taken);
-                taken.insert(copy.label.clone());
+                copy.label = labels.claim(&copy.label);
                 session.stations.insert(station_idx + 1, copy);
                 for_printed_rows(session, |printed| printed.insert(station_idx + 1, printed[station_idx]));
             }
@@ -496,14 +531,12 @@ fn set_target(session: &mut Session, target: &Target) -> Result<(), EditRefusal>
             within(*radius_mm, &limits::BALL_RADIUS_MM)?;
             radius_std_mm.map_or(Ok(()), |std| within(std, &limits::LENGTH_STD_MM))?;
         }
-        Target::RightAnglePlate if session.stations.iter().any(|station| station.edge.is_none()) => {
-            return Err(EditRefusal::EdgesMissing);
-        }
+        Target::RightAnglePlate => session.stations.iter_mut().for_each(need_edge),
         Target::Rgbd { .. } if !session.stations.is_empty() => return Err(EditRefusal::NoStationsHere),
         Target::Rgbd { sequence } if sequence.trim().is_empty() || Path::new(sequence).is_absolute() => {
             return Err(EditRefusal::NotASequence { found: sequence.clone() });
         }
-        Target::RightAnglePlate | Target::Point | Target::Rgbd { .. } => {}
+        Target::Point | Target::Rgbd { .. } => {}
     }
     if std::mem::discriminant(target) != std::mem::discriminant(&session.target) {
         // The truth is a ball's, and what else the file said was said of the other kind.
