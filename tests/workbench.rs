@@ -9,7 +9,7 @@ use handeye::app::{Command, NoticeKind, Workbench};
 use handeye::calibrate::{Method, Solution, Verdict, verdict::judge};
 use handeye::diagnose::{Diagnosis, Evidence, Fault, Finding, Reason, Remedy, Severity, verdict_with};
 use handeye::plan::Limits;
-use handeye::session;
+use handeye::session::{self, Edit, SetupField};
 
 struct Bench {
     workbench: Workbench,
@@ -265,4 +265,40 @@ fn findings_only_make_the_verdict_worse() {
         assert_eq!(verdict, expected);
         assert_eq!(matches!(reason, Reason::Finding(_)), severity != Severity::Note);
     }
+}
+
+#[test]
+fn another_name_leaves_the_results_as_they_are() {
+    let mut bench = Bench::new();
+    bench.apply(Command::OpenSample(sample("clean-sweeps.json")));
+    let solved = bench.workbench.results().expect("solved").revision;
+    let rename = Edit::Setup(SetupField::Name("cell 4".to_owned()));
+    bench.workbench.apply(Command::Edit { edit: rename, gesture: None });
+    assert!(!bench.workbench.is_busy(), "nothing is computed of a name");
+    assert!(bench.workbench.results_are_current());
+    assert_eq!(bench.workbench.results().expect("solved").revision, solved);
+    assert!(bench.workbench.document().expect("open").is_unsaved());
+    // What is computed with makes them old, also when it is undone together with the name.
+    bench.apply(Command::SetStationEnabled { station_idx: 0, enabled: false });
+    assert!(bench.workbench.results().expect("solved").revision > solved);
+    bench.apply(Command::StepHistory(-2));
+    assert!(bench.workbench.results_are_current());
+    assert!(!bench.workbench.document().expect("open").is_unsaved());
+}
+
+#[test]
+fn saving_right_after_save_as_goes_to_the_new_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [old, new] = ["old.json", "new.json"].map(|name| folder.path().join(name));
+    let mut bench = Bench::new();
+    bench.apply(Command::OpenSample(sample("clean-sweeps.json")));
+    bench.apply(Command::SaveAs(old.clone()));
+    let rename = |name: &str| Command::Edit { edit: Edit::Setup(SetupField::Name(name.to_owned())), gesture: None };
+    bench.workbench.apply(rename("first"));
+    bench.workbench.apply(Command::SaveAs(new.clone()));
+    bench.workbench.apply(rename("second"));
+    bench.apply(Command::Save);
+    assert_eq!(session::load(&new).expect("saved").name, "second");
+    assert_eq!(session::load(&old).expect("saved").name, "Clean sweeps, simulated");
+    assert_eq!(bench.workbench.document().expect("open").path.as_deref(), Some(&*new));
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::session::format::Stamp;
 use crate::session::{History, Session};
+use crate::text::document::UNTITLED;
 
 /// How the file of the open session is, as far as is known.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -29,6 +30,8 @@ pub struct Document {
     pub path: Option<PathBuf>,
     /// Counts the edits; results know the revision they belong to.
     pub revision: u64,
+    /// The revision since which nothing has changed that is computed with: names and notes do not make results old.
+    pub data_revision: u64,
     /// What can be undone.
     pub history: History,
     /// What its file is like.
@@ -57,6 +60,7 @@ impl Document {
             session,
             path,
             revision,
+            data_revision: revision,
             history: History::default(),
             on_disk: OnDisk::Same,
             is_read_only: false,
@@ -82,7 +86,7 @@ impl Document {
     /// Steps of the history between the file and what is on the bench.
     #[must_use]
     pub fn num_unsaved_steps(&self) -> usize {
-        self.history.undo_labels().len().abs_diff(self.num_steps_when_saved)
+        self.history.num_steps().abs_diff(self.num_steps_when_saved)
     }
 
     /// The file's name, or the session's.
@@ -91,12 +95,24 @@ impl Document {
         self.path
             .as_deref()
             .and_then(Path::file_name)
-            .map_or_else(|| self.session.name.clone(), |name| name.to_string_lossy().into_owned())
+            .map_or_else(|| self.name_or_untitled().to_owned(), |name| name.to_string_lossy().into_owned())
     }
 
-    /// The session is another now.
-    pub(super) fn note_changed(&mut self, revision: u64) {
+    /// The session's name, or what stands for one.
+    #[must_use]
+    pub fn name_or_untitled(&self) -> &str {
+        match self.session.name.trim() {
+            "" => UNTITLED,
+            name => name,
+        }
+    }
+
+    /// The session is another now, or only what it is called.
+    pub(super) fn note_changed(&mut self, revision: u64, is_data_changed: bool) {
         self.revision = revision;
+        if is_data_changed {
+            self.data_revision = revision;
+        }
         self.compare_with_saved();
     }
 
@@ -105,7 +121,7 @@ impl Document {
         self.saved = Some(saved);
         self.compare_with_saved();
         if !self.is_unsaved {
-            self.num_steps_when_saved = self.history.undo_labels().len();
+            self.num_steps_when_saved = self.history.num_steps();
         }
     }
 

@@ -28,7 +28,7 @@ pub struct History {
     redo: Vec<Step>,
     /// The gesture that the newest step belongs to, as long as nothing else has happened.
     open_gesture: Option<u64>,
-    has_forgotten: bool,
+    num_forgotten: usize,
 }
 
 impl History {
@@ -53,7 +53,7 @@ impl History {
         }
         if self.undo.len() == MAX_STEPS {
             self.undo.remove(0);
-            self.has_forgotten = true;
+            self.num_forgotten += 1;
         }
         self.undo.push(Step { label: label.into(), before });
         self.open_gesture = gesture;
@@ -95,10 +95,16 @@ impl History {
         self.redo.iter().rev().map(|step| step.label.as_str())
     }
 
+    /// Steps from the beginning to the present, forgotten ones included.
+    #[must_use]
+    pub const fn num_steps(&self) -> usize {
+        self.num_forgotten + self.undo.len()
+    }
+
     /// Whether all steps since the beginning are still there.
     #[must_use]
     pub const fn is_complete(&self) -> bool {
-        !self.has_forgotten
+        self.num_forgotten == 0
     }
 
     fn step(from: &mut Vec<Step>, to: &mut Vec<Step>, present: Arc<Session>) -> Option<Arc<Session>> {

@@ -209,6 +209,21 @@ impl Session {
         }
     }
 
+    /// Whether everything that is computed of the other session holds of this one: they differ in names and notes at most.
+    #[must_use]
+    pub fn gives_results_of(&self, other: &Self) -> bool {
+        let robot =
+            |session: &Self| (session.robot.notation, session.robot.position_std_mm, session.robot.orientation_std_deg);
+        let sensor = |session: &Self| (session.sensor.profile_std_mm, session.sensor.reference_distance_mm);
+        robot(self) == robot(other)
+            && sensor(self) == sensor(other)
+            && self.target == other.target
+            && self.mount == other.mount
+            && self.stations == other.stations
+            && self.published == other.published
+            && self.truth == other.truth
+    }
+
     /// Number of captures over all stations.
     #[must_use]
     pub fn num_captures(&self) -> usize {

@@ -40,14 +40,13 @@ impl Workbench {
     pub(super) fn go_through_history(&mut self, steps: isize) {
         let Some(document) = &mut self.document else { return };
         let step = if steps < 0 { History::undo } else { History::redo };
-        let mut has_moved = false;
+        let before = Arc::clone(&document.session);
         for _ in 0..steps.unsigned_abs() {
             let Some(session) = step(&mut document.history, Arc::clone(&document.session)) else { break };
             document.session = session;
-            has_moved = true;
         }
-        if has_moved {
-            self.touch();
+        if !Arc::ptr_eq(&before, &document.session) {
+            self.touch(&before);
         }
     }
 
@@ -64,17 +63,19 @@ impl Workbench {
             return;
         }
         let before = std::mem::replace(&mut document.session, Arc::new(changed));
-        document.history.record(label, gesture, before, &document.session);
-        self.touch();
+        document.history.record(label, gesture, Arc::clone(&before), &document.session);
+        self.touch(&before);
     }
 
-    /// The document has changed: a new revision, to be solved.
-    pub(super) fn touch(&mut self) {
+    /// The document has changed: a new revision, to be solved unless it is only called something else.
+    fn touch(&mut self, before: &Session) {
+        let Some(document) = &mut self.document else { return };
         self.last_revision += 1;
-        if let Some(document) = &mut self.document {
-            document.note_changed(self.last_revision);
-        }
+        let is_data_changed = !document.session.gives_results_of(before);
+        document.note_changed(self.last_revision, is_data_changed);
         self.keep_copy();
-        self.start_solving();
+        if is_data_changed {
+            self.start_solving();
+        }
     }
 }

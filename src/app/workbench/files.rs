@@ -119,7 +119,7 @@ impl Workbench {
                         self.put_on_bench(document);
                     }
                 }
-                Purpose::Reload { document_id } => self.take_reloaded(document_id, session, stamp, is_read_only),
+                Purpose::Reload { document_id } => self.take_reloaded(document_id, path, session, stamp, is_read_only),
             },
             JobOutcome::Done(Loaded { purpose: Purpose::Open, session: Err(error), .. }) => {
                 self.notify_of_opening(error.to_string());
@@ -134,8 +134,16 @@ impl Workbench {
         }
     }
 
-    fn take_reloaded(&mut self, document_id: u64, session: Session, stamp: Option<Stamp>, is_read_only: bool) {
-        if self.document.as_ref().is_none_or(|document| document.id != document_id) {
+    fn take_reloaded(
+        &mut self,
+        document_id: u64,
+        path: Option<PathBuf>,
+        session: Session,
+        stamp: Option<Stamp>,
+        is_read_only: bool,
+    ) {
+        // Its file may have become another meanwhile.
+        if self.document.as_ref().is_none_or(|document| document.id != document_id || document.path != path) {
             return;
         }
         self.forget_errors();
@@ -194,13 +202,20 @@ impl Workbench {
     }
 
     pub(super) fn save(&mut self) {
-        match self.document.as_ref().map(|document| document.path.clone()) {
+        match self.document.as_ref().map(|document| self.path_to_be(document)) {
             Some(Some(path)) => self.start_saving(path),
             Some(None) => {
                 self.notify(NoticeKind::Error, "this session has no file yet: choose one with \"Save as…\"".to_owned());
             }
             None => self.notify(NoticeKind::Error, "there is no open session to save".to_owned()),
         }
+    }
+
+    /// The document's file once all saves that are under way have arrived.
+    fn path_to_be(&self, document: &Document) -> Option<PathBuf> {
+        let on_its_way =
+            self.newest_save.as_ref().filter(|(document_id, _)| self.is_saving() && *document_id == document.id);
+        on_its_way.map(|(_, path)| path).or(document.path.as_ref()).cloned()
     }
 
     /// Saves to a file. The document's own is replaced only if it is as it was; that another may be replaced was asked
@@ -226,6 +241,7 @@ impl Workbench {
             return;
         };
         let save = Save { document_id: document.id, session: Arc::clone(&document.session), path, known };
+        self.newest_save = Some((save.document_id, save.path.clone()));
         if self.saving.is_running() {
             // A save is never dropped; the next one starts when this one has ended.
             self.save_queue.push_back(save);

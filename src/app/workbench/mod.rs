@@ -82,6 +82,8 @@ pub struct Workbench {
     revision_before_loading: Option<u64>,
     saving: Slot<(Save, SaveOutcome)>,
     save_queue: VecDeque<Save>,
+    /// The document and the file of the save that was asked for last.
+    newest_save: Option<(u64, PathBuf)>,
     /// A save that met a file changed by another program; the user is to say what becomes of it.
     conflict: Option<PathBuf>,
     looking: Slot<Look>,
@@ -114,6 +116,7 @@ impl Workbench {
             saving: Slot::default(),
             revision_before_loading: None,
             save_queue: VecDeque::new(),
+            newest_save: None,
             conflict: None,
             looking: Slot::default(),
             looks_again: false,
@@ -150,7 +153,7 @@ impl Workbench {
     /// Whether a revision is that of the document as it is now.
     #[must_use]
     pub fn is_current(&self, revision: u64) -> bool {
-        self.document.as_ref().is_some_and(|document| document.revision == revision)
+        self.document.as_ref().is_some_and(|document| revision >= document.data_revision)
     }
 
     /// What is wrong with the session. It follows the results by itself.

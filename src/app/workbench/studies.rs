@@ -86,7 +86,7 @@ impl Workbench {
     /// Document, problem and results of the same revision, if there are any.
     pub(super) fn case(&self) -> Option<(Arc<Session>, Arc<BallProblem>, Arc<Results>)> {
         let document = self.document.as_ref()?;
-        let results = self.results.as_ref().filter(|results| results.revision == document.revision)?;
+        let results = self.results.as_ref().filter(|results| self.is_current(results.revision))?;
         let problem = results.problem.as_ref()?;
         Some((Arc::clone(&document.session), Arc::clone(problem), Arc::clone(results)))
     }

@@ -4,6 +4,8 @@ use std::time::Duration;
 
 use super::shell::count;
 
+/// In place of a name that is not given.
+pub const UNTITLED: &str = "untitled session";
 /// Menu entry that shows the history.
 pub const HISTORY_ENTRY: &str = "History…";
 /// Title of the history window.

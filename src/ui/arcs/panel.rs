@@ -205,7 +205,7 @@ fn plots(
         .filter(|capture_idx| *capture_idx < station.captures.len())
         .unwrap_or(selection.capture_idx);
     let view = state.view(document, results, selection.station_idx, shown_capture);
-    let is_out_of_date = results.is_some_and(|results| results.revision != document.revision);
+    let is_out_of_date = results.is_some_and(|results| results.revision < document.data_revision);
     let shift = shift_words(view.as_deref(), state.fit);
     top_strip(ui, station, sweep, selection, &mut state.fit, shift.as_deref(), is_out_of_date);
 

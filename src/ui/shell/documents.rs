@@ -83,8 +83,7 @@ impl Shell {
             return document.title();
         }
         let name: String = document
-            .session
-            .name
+            .name_or_untitled()
             .chars()
             .map(|letter| if letter.is_alphanumeric() || "-_.".contains(letter) { letter } else { '-' })
             .collect();
