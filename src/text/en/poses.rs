@@ -19,7 +19,10 @@ pub const UNFOLD_ALL: &str = "Unfold all";
 /// Button.
 pub const FOLD_ALL: &str = "Fold all";
 /// A session without stations.
-pub const NO_STATIONS: &str = "No stations yet: add one, or paste rows from a spreadsheet with Ctrl+V.";
+pub const EMPTY: &str = "No stations yet";
+/// How a session without stations gets some.
+pub const NO_STATIONS: &str =
+    "Add a station (Insert), paste a table of poses (Ctrl+V), or import files of poses and profiles (Ctrl+I).";
 
 /// Button.
 pub const ADD: &str = "Add station";

@@ -37,7 +37,8 @@ impl Sheet {
 
     /// Takes a text from the clipboard: cells for the table, or something for the import.
     pub fn paste(&mut self, session: &Session, text: &str, commands: &mut Vec<Command>) {
-        if is_for_import(text) {
+        // Into an empty table nothing can be placed by its neighbours: the preview shows what becomes of it.
+        if is_for_import(text) || session.stations.is_empty() {
             commands.push(Command::ImportText(text.to_owned()));
             return;
         }
