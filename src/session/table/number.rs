@@ -65,7 +65,8 @@ impl Unit {
 /// [`NotANumber`].
 pub fn parse_quantity(text: &str) -> Result<(f64, Option<Unit>), NotANumber> {
     let trimmed = text.trim();
-    let (number, unit) = trimmed.split_at(trimmed.trim_end_matches(|letter: char| letter.is_alphabetic() || letter == '°').len());
+    let (number, unit) =
+        trimmed.split_at(trimmed.trim_end_matches(|letter: char| letter.is_alphabetic() || letter == '°').len());
     match Unit::parse(unit) {
         Some(unit) if !number.is_empty() => {
             let refused = |_| NotANumber::Text { found: shortened(trimmed) };

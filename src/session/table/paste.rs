@@ -82,7 +82,9 @@ pub fn paste(session: &Session, spot: &Spot<'_>, block: &[Vec<String>]) -> Paste
     pasted.overwritten = typed.iter().filter(is_there).map(|cell| (cell.place, cell.column)).collect();
     let read = read_cells(&extended, &typed);
     let incomplete: HashSet<usize> = read.refused.iter().map(|refused| refused.cell.place.station_idx).collect();
-    let new_labels: HashMap<usize, String> = read.values.iter()
+    let new_labels: HashMap<usize, String> = read
+        .values
+        .iter()
         .filter_map(|(place, value)| match value {
             CellValue::Label(label) => Some((place.station_idx, label.clone())),
             _ => None,
@@ -154,8 +156,9 @@ fn target_columns<'b>(
             known == full || (known == name && !full.starts_with("point"))
         })?;
         let own = column_unit(notation, column);
-        let unit = unit_of_name(text)
-            .filter(|unit| column.is_number() && (Unit::parse(unit).is_none() || Unit::parse(unit) != Unit::parse(own)));
+        let unit = unit_of_name(text).filter(|unit| {
+            column.is_number() && (Unit::parse(unit).is_none() || Unit::parse(unit) != Unit::parse(own))
+        });
         Some(Goal { column, unit: unit.map(str::to_owned) })
     };
     if let Some((first, rest)) = block.split_first() {
@@ -192,11 +195,10 @@ fn missing_numbers<'a>(
     columns: &'a [Option<Goal>],
     texts: &'a [String],
 ) -> impl Iterator<Item = TypedCell> + 'a {
-    let has =
-        move |column: Column| {
-            let is_it = |target: &Option<Goal>| target.as_ref().is_some_and(|target| target.column == column);
-            texts.iter().zip(columns).any(|(text, target)| is_it(target) && !text.is_empty())
-        };
+    let has = move |column: Column| {
+        let is_it = |target: &Option<Goal>| target.as_ref().is_some_and(|target| target.column == column);
+        texts.iter().zip(columns).any(|(text, target)| is_it(target) && !text.is_empty())
+    };
     (0..session.robot.notation.num_numbers())
         .map(Column::Number)
         .filter(move |column| !has(*column))

@@ -227,6 +227,12 @@ pub fn pasted(
     parts.into_iter().filter(|(is_so, _)| *is_so).map(|(_, part)| part).collect::<Vec<_>>().join(" ")
 }
 
+/// Nothing was pasted.
+#[must_use]
+pub fn not_pasted(reason: &dyn std::fmt::Display) -> String {
+    format!("Nothing was pasted: {reason}.")
+}
+
 /// Title's right side.
 #[must_use]
 pub fn usage(num_enabled: usize, num_stations: usize) -> String {
