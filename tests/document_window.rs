@@ -399,3 +399,17 @@ fn the_history_goes_where_it_says_although_a_cell_is_being_typed() {
     click(&mut harness, &words::history_step(words::AS_OPENED, false));
     assert_eq!(*document(&harness).session, *start);
 }
+
+#[test]
+fn what_is_pasted_into_an_empty_table_is_shown_before_it_is_taken() {
+    let mut harness = open_sample();
+    let num_stations = document(&harness).session.stations.len();
+    let rows = (0..num_stations).map(session::Row::Station).collect();
+    request(&mut harness, Command::Edit { edit: Edit::Remove(rows), gesture: None });
+    harness.state_mut().shell_mut().go_to(Step::Poses);
+    settle(&mut harness);
+    harness.event(egui::Event::Paste("1\t2\t3\t0\t0\t0\n4\t5\t6\t0\t0\t0\n".to_owned()));
+    settle(&mut harness);
+    assert!(workbench(&harness).import().is_some(), "the preview asks");
+    assert_eq!(document(&harness).session.stations, []);
+}
