@@ -357,3 +357,59 @@ fn recent_files_that_are_gone_say_so_and_can_be_removed() {
     click(&mut harness, &words::remove_recent(&path.display().to_string()));
     assert_eq!(harness.state().shell().persisted().recent_files, Vec::<PathBuf>::new());
 }
+
+/// A new text in the second station's x, still being typed.
+fn type_into_table(harness: &mut Handeye, text: &str) {
+    harness.state_mut().shell_mut().go_to(Step::Poses);
+    settle(harness);
+    click(harness, "x of 2");
+    harness.event(egui::Event::Text(text.to_owned()));
+    settle(harness);
+}
+
+fn x_mm_of_second(session: &Session) -> f64 {
+    session.stations[1].captures[0].base_from_flange.translation_mm().x
+}
+
+#[test]
+fn a_cell_still_being_typed_is_part_of_what_is_saved() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (mut harness, path) = window_with_file(folder.path());
+    type_into_table(&mut harness, "512");
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
+    settle(&mut harness);
+    assert!((x_mm_of_second(&document(&harness).session) - 512.0).abs() < 1e-9);
+    let saved = session::load(&path).expect("loads");
+    assert!((x_mm_of_second(&saved) - 512.0).abs() < 1e-9);
+    // What cannot be read waits, and the rest is saved.
+    type_into_table(&mut harness, "5..1");
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
+    settle(&mut harness);
+    harness.get_by_label_contains("\"5..1\" is not in the session");
+}
+
+#[test]
+fn the_history_goes_where_it_says_although_a_cell_is_being_typed() {
+    let mut harness = open_sample();
+    let start = Arc::clone(&document(&harness).session);
+    set_notes(&mut harness, "one");
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::H);
+    settle(&mut harness);
+    type_into_table(&mut harness, "512");
+    click(&mut harness, &words::history_step(words::AS_OPENED, false));
+    assert_eq!(*document(&harness).session, *start);
+}
+
+#[test]
+fn what_is_pasted_into_an_empty_table_is_shown_before_it_is_taken() {
+    let mut harness = open_sample();
+    let num_stations = document(&harness).session.stations.len();
+    let rows = (0..num_stations).map(session::Row::Station).collect();
+    request(&mut harness, Command::Edit { edit: Edit::Remove(rows), gesture: None });
+    harness.state_mut().shell_mut().go_to(Step::Poses);
+    settle(&mut harness);
+    harness.event(egui::Event::Paste("1\t2\t3\t0\t0\t0\n4\t5\t6\t0\t0\t0\n".to_owned()));
+    settle(&mut harness);
+    assert!(workbench(&harness).import().is_some(), "the preview asks");
+    assert_eq!(document(&harness).session.stations, []);
+}

@@ -443,3 +443,95 @@ fn two_thousand_stations_are_edited_like_five() {
     assert_eq!(typed_x(&mut table), (place(1999), 5.0));
     assert!(table.query_by_label("x of 1").is_none(), "only rows in sight are drawn");
 }
+
+/// Types into a cell without Enter, then clicks a button once, as a mouse does.
+fn type_and_click(cell: &str, text: &str, button: &str) -> Table {
+    let mut table = table_of(printed());
+    click(&mut table, cell);
+    type_in(&mut table, text);
+    click(&mut table, button);
+    table.run_steps(3);
+    table
+}
+
+fn button(hint: &str) -> &str {
+    hint.split(" (").next().unwrap_or(hint)
+}
+
+fn x_of(session: &Session) -> Vec<(String, String)> {
+    let x = |idx: usize| session::table::text(session, place(idx), session::table::Column::Number(0));
+    session.stations.iter().enumerate().map(|(idx, station)| (station.label.clone(), x(idx))).collect()
+}
+
+#[test]
+fn a_button_takes_over_the_open_cell_before_it_moves_anything() {
+    let start = x_of(&printed());
+    let with = |label: &str, x: &str, order: &[usize]| {
+        let typed = |(name, old): &(String, String)| (name.clone(), if name == label { x } else { old }.to_owned());
+        order.iter().map(|idx| typed(&start[*idx])).collect::<Vec<_>>()
+    };
+    let deleted = type_and_click("x of 2", "500", button(words::DELETE_HINT));
+    assert_eq!(x_of(&now(&deleted)), with("2", "500", &[0, 2, 3, 4]));
+    let up = type_and_click("x of 2", "500", button(words::MOVE_UP_HINT));
+    assert_eq!(x_of(&now(&up)), with("2", "500", &[1, 0, 2, 3, 4]));
+    let down = type_and_click("x of 2", "500", button(words::MOVE_DOWN_HINT));
+    assert_eq!(x_of(&now(&down)), with("2", "500", &[0, 2, 1, 3, 4]));
+    // The order is that of the new values.
+    for name in [button(words::SORT_BUTTON_HINT), words::sort_by("x / mm").as_str()] {
+        let sorted = x_of(&now(&type_and_click("x of 2", "-99999", name)));
+        assert_eq!(sorted[0], ("2".to_owned(), "-99999".to_owned()), "{name}");
+    }
+}
+
+#[test]
+fn rows_picked_one_by_one_stay_picked_as_they_move() {
+    let mut table = table_of(printed());
+    click(&mut table, &words::row_head("2"));
+    table.get_by_label(&words::row_head("5")).click_modifiers(Modifiers::COMMAND);
+    table.run_steps(3);
+    for _ in 0..2 {
+        press_with(&mut table, Modifiers::ALT, Key::ArrowUp);
+    }
+    let labels: Vec<String> = now(&table).stations.iter().map(|station| station.label.clone()).collect();
+    assert_eq!(labels, ["2", "1", "3", "5", "4"], "at the top it stops");
+}
+
+#[test]
+fn what_is_pasted_into_an_empty_table_goes_to_the_preview() {
+    let mut session = printed();
+    session.stations.clear();
+    session.published = None;
+    let mut table = table_of(session);
+    click(&mut table, button(words::ADD_HINT));
+    assert_eq!(now(&table).stations.len(), 1);
+    press_with(&mut table, Modifiers::COMMAND, Key::Delete);
+    taken(&mut table);
+    paste(&mut table, "1\t2\t3\t0\t0\t0");
+    assert_eq!(taken(&mut table), [Command::ImportText("1\t2\t3\t0\t0\t0".to_owned())]);
+}
+
+#[test]
+fn texts_go_with_their_station() {
+    let mut table = table_of(printed());
+    click(&mut table, "x of 5");
+    paste(&mut table, "1\t2\t3\t0\t0\t0\n4\tabc\t6\t0\t0\t0\n");
+    assert_eq!(shown(&table, "y of 6"), "abc");
+    table.state_mut().workbench.apply(Command::Undo);
+    table.run_steps(3);
+    press_with(&mut table, Modifiers::COMMAND, Key::End);
+    press(&mut table, Key::Insert);
+    assert_ne!(shown(&table, "y of 6"), "abc");
+}
+
+#[test]
+fn an_empty_cell_of_a_line_leaves_the_selected_rows_as_they_are() {
+    let mut table = table_of(printed());
+    click(&mut table, &words::row_head("2"));
+    press_with(&mut table, Modifiers::SHIFT, Key::ArrowDown);
+    paste(&mut table, "\t\t\t77");
+    let session = now(&table);
+    assert!(session.stations.iter().all(|station| station.enabled));
+    let x = x_of(&session);
+    assert_eq!([x[1].1.as_str(), x[2].1.as_str()], ["77", "77"]);
+    assert!(!shown(&table, "check of 2").contains("not read"));
+}

@@ -22,6 +22,8 @@ pub struct HistoryWindow {
     pub is_open: bool,
     /// The place in the history that was last brought into view, with the number of steps.
     seen: Option<(usize, usize)>,
+    /// The place in the history to go to with the next frame, when the document has what was being typed.
+    target: Option<usize>,
 }
 
 impl HistoryWindow {
@@ -46,8 +48,14 @@ impl HistoryWindow {
     }
 
     fn steps(&mut self, ui: &mut Ui, history: &History, commands: &mut Vec<Command>) {
+        let target = self.target.take();
         let present = history.undo_labels().len();
         let num_steps = present + history.redo_labels().len();
+        if let Some(steps) = target.filter(|idx| *idx <= num_steps).and_then(|idx| idx.checked_signed_diff(present))
+            && steps != 0
+        {
+            commands.push(Command::StepHistory(steps));
+        }
         if num_steps == 0 {
             ui.label(theme::dim(ui, words::NO_HISTORY));
             return;
@@ -58,9 +66,9 @@ impl HistoryWindow {
         ScrollArea::vertical().max_height(MAX_HEIGHT).auto_shrink([false, true]).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
             for (idx, label) in labels.enumerate() {
-                let is_clicked = step(ui, label, idx, present, is_moved);
-                if is_clicked && let Some(steps) = idx.checked_signed_diff(present) {
-                    commands.push(Command::StepHistory(steps));
+                if step(ui, label, idx, present, is_moved) {
+                    self.target = Some(idx);
+                    ui.ctx().request_repaint();
                 }
             }
         });

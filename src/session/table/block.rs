@@ -1,12 +1,23 @@
 //! Blocks of cells as spreadsheets exchange them: tab-separated lines, cells with breaks or quotes in quotes.
 
+use thiserror::Error;
+
+use super::number::parse_quantity;
+
 /// Most cells that are taken from one paste; more is no table of poses.
 pub const MAX_CELLS: usize = 1_000_000;
 
+/// More cells than a table of poses has.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[error("found more than {MAX_CELLS} cells, needed at most so many; paste a part of them")]
+pub struct TooManyCells;
+
 /// The cells of a pasted text, row by row. Tabs separate; where there are none, semicolons do, and then commas between
 /// things that are not digits on both sides, as `12,5` is one number.
-#[must_use]
-pub fn parse_block(text: &str) -> Vec<Vec<String>> {
+///
+/// # Errors
+/// [`TooManyCells`]: nothing is taken then, as a part would pass for the whole.
+pub fn parse_block(text: &str) -> Result<Vec<Vec<String>>, TooManyCells> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let separator = separator_of(text);
     let mut rows = vec![Vec::new()];
@@ -19,7 +30,7 @@ pub fn parse_block(text: &str) -> Vec<Vec<String>> {
             row.push(std::mem::take(cell).trim().to_owned());
         }
         num_cells += 1;
-        num_cells < MAX_CELLS
+        if num_cells <= MAX_CELLS { Ok(()) } else { Err(TooManyCells) }
     };
     while let Some(letter) = letters.next() {
         match letter {
@@ -35,18 +46,14 @@ pub fn parse_block(text: &str) -> Vec<Vec<String>> {
             }
             '\r' => {
                 letters.next_if_eq(&'\n');
-                end_cell(&mut rows, &mut cell);
+                end_cell(&mut rows, &mut cell)?;
                 rows.push(Vec::new());
             }
             '\n' => {
-                end_cell(&mut rows, &mut cell);
+                end_cell(&mut rows, &mut cell)?;
                 rows.push(Vec::new());
             }
-            _ if Some(letter) == separator => {
-                if !end_cell(&mut rows, &mut cell) {
-                    break;
-                }
-            }
+            _ if Some(letter) == separator => end_cell(&mut rows, &mut cell)?,
             _ => {
                 cell.push(letter);
                 is_start = false;
@@ -55,12 +62,12 @@ pub fn parse_block(text: &str) -> Vec<Vec<String>> {
         }
         is_start = true;
     }
-    end_cell(&mut rows, &mut cell);
+    end_cell(&mut rows, &mut cell)?;
     // A line's end at the end of the text begins no further row.
     while rows.len() > 1 && rows.last().is_some_and(|row| row.iter().all(String::is_empty)) {
         rows.pop();
     }
-    rows
+    Ok(rows)
 }
 
 fn separator_of(text: &str) -> Option<char> {
@@ -69,6 +76,10 @@ fn separator_of(text: &str) -> Option<char> {
     }
     if text.contains(';') {
         return Some(';');
+    }
+    // One number a line, with separators of thousands.
+    if text.lines().all(|line| line.trim().is_empty() || parse_quantity(line).is_ok()) {
+        return None;
     }
     // With decimal points about, or blanks behind them, commas separate.
     let has_points = text.bytes().any(|byte| byte == b'.');

@@ -43,8 +43,9 @@ pub fn fill_down(session: &Session, rows: &[Row], columns: &[Column]) -> Vec<Typ
 pub fn next_label(label: &str) -> String {
     let stem = label.trim_end_matches(|letter: char| letter.is_ascii_digit());
     let digits = &label[stem.len()..];
-    match digits.parse::<u64>() {
-        Ok(number) => format!("{stem}{:0width$}", number.saturating_add(1), width = digits.len()),
-        Err(_) => format!("{label} 2"),
+    match digits.parse::<u64>().ok().and_then(|number| number.checked_add(1)) {
+        Some(number) => format!("{stem}{number:0width$}", width = digits.len()),
+        // Also behind a number that cannot be counted on.
+        None => format!("{label} 2"),
     }
 }

@@ -44,6 +44,12 @@ impl Column {
         matches!(self, Self::Used | Self::Label | Self::Side | Self::Edge)
     }
 
+    /// Whether an empty cell of it means something.
+    #[must_use]
+    pub const fn can_be_empty(self) -> bool {
+        matches!(self, Self::Step | Self::Point(_))
+    }
+
     /// Whether its cells hold numbers.
     #[must_use]
     pub const fn is_number(self) -> bool {

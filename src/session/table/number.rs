@@ -16,11 +16,72 @@ pub enum NotANumber {
     },
 }
 
-/// Units that may stand behind a number; they are read over, not converted.
-const UNITS: [&str; 5] = ["mm", "deg", "rad", "°", "m"];
+/// A unit that may stand behind a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// Millimetres.
+    Millimetres,
+    /// Metres.
+    Metres,
+    /// Degrees.
+    Degrees,
+    /// Radians.
+    Radians,
+}
 
-/// Reads a number; `12,5` is twelve and a half, `1.234,5`, `1,234.5` and `1 234,5` have thousands separators, a true minus
-/// and a plus are understood, and a unit behind the number is read over. NaN and infinity are not numbers.
+impl Unit {
+    /// The unit that a text names.
+    #[must_use]
+    pub fn parse(text: &str) -> Option<Self> {
+        match text {
+            "mm" => Some(Self::Millimetres),
+            "m" => Some(Self::Metres),
+            "°" | "deg" => Some(Self::Degrees),
+            "rad" => Some(Self::Radians),
+            _ => None,
+        }
+    }
+
+    /// What a number of this unit is multiplied with to be one of the other; `None` between a length and an angle.
+    #[must_use]
+    pub const fn factor_to(self, other: Self) -> Option<f64> {
+        match (self, other) {
+            (Self::Millimetres, Self::Millimetres)
+            | (Self::Metres, Self::Metres)
+            | (Self::Degrees, Self::Degrees)
+            | (Self::Radians, Self::Radians) => Some(1.0),
+            (Self::Metres, Self::Millimetres) => Some(1e3),
+            (Self::Millimetres, Self::Metres) => Some(1e-3),
+            (Self::Radians, Self::Degrees) => Some(180.0 / std::f64::consts::PI),
+            (Self::Degrees, Self::Radians) => Some(std::f64::consts::PI / 180.0),
+            _ => None,
+        }
+    }
+}
+
+/// Reads a number and the unit behind it, if there is one.
+///
+/// # Errors
+/// [`NotANumber`].
+pub fn parse_quantity(text: &str) -> Result<(f64, Option<Unit>), NotANumber> {
+    let trimmed = text.trim();
+    let (number, unit) =
+        trimmed.split_at(trimmed.trim_end_matches(|letter: char| letter.is_alphabetic() || letter == '°').len());
+    match Unit::parse(unit) {
+        Some(unit) if !number.is_empty() => {
+            let refused = |_| NotANumber::Text { found: shortened(trimmed) };
+            parse_number(number).map(|number| (number, Some(unit))).map_err(refused)
+        }
+        _ => parse_number(text).map(|number| (number, None)),
+    }
+}
+
+fn shortened(text: &str) -> String {
+    text.chars().take(40).collect()
+}
+
+/// Reads a number without a unit; `12,5` is twelve and a half, `1.234,5`, `1,234.5` and `1 234,5` have thousands
+/// separators, a true minus and a plus are understood. NaN and infinity are not numbers.
 ///
 /// A single comma or point is always the decimal one.
 ///
@@ -31,11 +92,10 @@ pub fn parse_number(text: &str) -> Result<f64, NotANumber> {
     if trimmed.is_empty() {
         return Err(NotANumber::Empty);
     }
-    let refused = || NotANumber::Text { found: trimmed.chars().take(40).collect() };
-    let unitless = UNITS.iter().find_map(|unit| trimmed.strip_suffix(unit)).unwrap_or(trimmed).trim_end();
-    let (negative, magnitude) = match unitless.strip_prefix(['-', '−', '–']) {
+    let refused = || NotANumber::Text { found: shortened(trimmed) };
+    let (negative, magnitude) = match trimmed.strip_prefix(['-', '−', '–']) {
         Some(rest) => (true, rest),
-        None => (false, unitless.strip_prefix('+').unwrap_or(unitless)),
+        None => (false, trimmed.strip_prefix('+').unwrap_or(trimmed)),
     };
     let (mantissa, exponent) = match magnitude.find(['e', 'E']) {
         Some(at) => (&magnitude[..at], exponent(&magnitude[at + 1..]).ok_or_else(refused)?),
@@ -109,9 +169,6 @@ mod tests {
             // One separator is the decimal one, whatever follows it.
             ("1.234", 1.234),
             ("1,234", 1.234),
-            ("12 mm", 12.0),
-            ("90°", 90.0),
-            ("0.5 m", 0.5),
             ("0.1 + 0.2", f64::NAN),
         ] {
             check(text, (!value.is_nan()).then_some(value));
@@ -150,9 +207,28 @@ mod tests {
             "1.2e3.4",
             "mm",
             "5 kg",
+            "12 mm",
+            "0.5 m",
         ] {
             check(text, None);
         }
+    }
+
+    #[test]
+    fn a_unit_is_told_from_its_number() {
+        for (text, expected) in [
+            ("12 mm", Some((12.0, Some(Unit::Millimetres)))),
+            ("90°", Some((90.0, Some(Unit::Degrees)))),
+            ("0,5 m", Some((0.5, Some(Unit::Metres)))),
+            ("1.57rad", Some((1.57, Some(Unit::Radians)))),
+            ("1e3", Some((1e3, None))),
+            ("mm", None),
+            ("5 kg", None),
+        ] {
+            assert_eq!(parse_quantity(text).ok(), expected, "{text}");
+        }
+        assert_eq!(Unit::Metres.factor_to(Unit::Millimetres), Some(1e3));
+        assert_eq!(Unit::Metres.factor_to(Unit::Degrees), None);
     }
 
     #[test]

@@ -10,8 +10,8 @@ use crate::session::edit::{CellValue, free_label};
 use crate::session::model::{Capture, Edge, Reading, Session, Station, Target, UnknownFields};
 use crate::session::{Edit, Place, Row};
 
-use super::number::{NotANumber, parse_number};
-use super::{CellProblem, Column, RefusedCell, TypedCell, column_name, has_cell, read_cells};
+use super::number::{NotANumber, Unit, parse_number, parse_quantity};
+use super::{CellProblem, Column, RefusedCell, TypedCell, column_name, column_unit, has_cell, read_cells};
 
 /// Where a block goes.
 #[derive(Clone, Copy, Debug)]
@@ -55,24 +55,23 @@ pub fn paste(session: &Session, spot: &Spot<'_>, block: &[Vec<String>]) -> Paste
     let mut extended = session.clone();
     append_blank(&mut extended, num_added);
     let mut typed = Vec::new();
-    let last_column = columns.iter().rposition(Option::is_some).map_or(0, |idx| idx + 1);
     for (idx, texts) in block.iter().enumerate() {
         let row = match idx.checked_sub(num_existing) {
             None => spot.rows[spot.row_idx + idx],
             Some(added_idx) => Row::Station(num_stations + added_idx),
         };
         let is_added = idx >= num_existing;
-        pasted.num_left_out += texts.iter().skip(last_column).filter(|text| !text.is_empty()).count();
-        for (text, column) in texts.iter().zip(&columns) {
-            let Some(column) = *column else {
+        pasted.num_left_out += texts.iter().skip(columns.len()).filter(|text| !text.is_empty()).count();
+        for (text, target) in texts.iter().zip(&columns) {
+            let Some(Goal { column, unit }) = target else {
                 pasted.num_left_out += usize::from(!text.is_empty());
                 continue;
             };
-            let can_be_empty = matches!(column, Column::Step | Column::Point(_));
+            let column = *column;
             if !has_cell(&extended, row, column) {
                 pasted.num_left_out += usize::from(!text.is_empty());
-            } else if can_be_empty || !text.is_empty() {
-                typed.push(TypedCell { place: row.place(), column, text: text.clone() });
+            } else if column.can_be_empty() || !text.is_empty() {
+                typed.push(TypedCell { place: row.place(), column, text: with_unit(text, unit.as_deref()) });
             }
         }
         if is_added {
@@ -82,10 +81,10 @@ pub fn paste(session: &Session, spot: &Spot<'_>, block: &[Vec<String>]) -> Paste
     let is_there = |cell: &&TypedCell| cell.place.station_idx < num_stations;
     pasted.overwritten = typed.iter().filter(is_there).map(|cell| (cell.place, cell.column)).collect();
     let read = read_cells(&extended, &typed);
-    let (added_values, values): (Vec<_>, Vec<_>) =
-        read.values.into_iter().partition(|(place, _)| place.station_idx >= num_stations);
     let incomplete: HashSet<usize> = read.refused.iter().map(|refused| refused.cell.place.station_idx).collect();
-    let new_labels: HashMap<usize, String> = (values.iter().chain(&added_values))
+    let new_labels: HashMap<usize, String> = read
+        .values
+        .iter()
         .filter_map(|(place, value)| match value {
             CellValue::Label(label) => Some((place.station_idx, label.clone())),
             _ => None,
@@ -95,23 +94,30 @@ pub fn paste(session: &Session, spot: &Spot<'_>, block: &[Vec<String>]) -> Paste
         |station_idx: usize| new_labels.get(&station_idx).unwrap_or(&extended.stations[station_idx].label).clone();
     pasted.refused =
         read.refused.into_iter().map(|refused| (label_of(refused.cell.place.station_idx), refused)).collect();
+    if num_added == 0 {
+        pasted.edit = (!read.values.is_empty()).then_some(Edit::SetCells(read.values));
+        return pasted;
+    }
+    // The values were read against the extended session, all of them together, as labels may change places.
+    let Ok(mut filled) = Edit::SetCells(read.values.clone()).apply(&extended) else {
+        // The document says why it does not take them.
+        pasted.edit = Some(Edit::SetCells(read.values));
+        return pasted;
+    };
     let mut edits = Vec::new();
+    let mut values = read.values;
+    values.retain(|(place, _)| place.station_idx < num_stations);
     if !values.is_empty() {
         edits.push(Edit::SetCells(values));
     }
-    // The places are those of the extended session, and the values were read against it: it takes them.
-    if num_added > 0
-        && let Ok(mut filled) = Edit::SetCells(added_values).apply(&extended)
-    {
-        let mut added = filled.stations.split_off(num_stations);
-        for (idx, station) in added.iter_mut().enumerate() {
-            if incomplete.contains(&(num_stations + idx)) && station.enabled {
-                station.enabled = false;
-                pasted.held_back.push(station.label.clone());
-            }
+    let mut added = filled.stations.split_off(num_stations);
+    for (idx, station) in added.iter_mut().enumerate() {
+        if incomplete.contains(&(num_stations + idx)) && station.enabled {
+            station.enabled = false;
+            pasted.held_back.push(station.label.clone());
         }
-        edits.push(Edit::InsertStations { at: num_stations, stations: added });
     }
+    edits.push(Edit::InsertStations { at: num_stations, stations: added });
     pasted.edit = match edits.len() {
         0 | 1 => edits.pop(),
         _ => Some(Edit::Several(edits)),
@@ -119,43 +125,80 @@ pub fn paste(session: &Session, spot: &Spot<'_>, block: &[Vec<String>]) -> Paste
     pasted
 }
 
+/// Where a column of the block goes.
+#[derive(Clone, Debug, PartialEq)]
+struct Goal {
+    column: Column,
+    /// The unit that its name in the first line gives, if it is not the table's own.
+    unit: Option<String>,
+}
+
+/// A number with the unit of its column, unless it has one of its own.
+fn with_unit(text: &str, unit: Option<&str>) -> String {
+    match unit {
+        Some(unit) if parse_number(text).is_ok() => format!("{text} {unit}"),
+        _ => text.to_owned(),
+    }
+}
+
 /// The column of each column of the block, and the rows without the line of names.
 fn target_columns<'b>(
     session: &Session,
     spot: &Spot<'_>,
     block: &'b [Vec<String>],
-) -> (Vec<Option<Column>>, &'b [Vec<String>]) {
+) -> (Vec<Option<Goal>>, &'b [Vec<String>]) {
+    let notation = &session.robot.notation;
     let by_name = |text: &String| {
         let name = text.split([' ', '(', '/', '[']).next().unwrap_or_default().to_lowercase();
         let full = text.split(['(', '/', '[']).next().unwrap_or_default().trim().to_lowercase();
-        spot.columns.iter().copied().find(|column| {
-            let known = column_name(&session.robot.notation, *column).to_lowercase();
+        let column = spot.columns.iter().copied().find(|column| {
+            let known = column_name(notation, *column).to_lowercase();
             known == full || (known == name && !full.starts_with("point"))
-        })
+        })?;
+        let own = column_unit(notation, column);
+        let unit = unit_of_name(text).filter(|unit| {
+            column.is_number() && (Unit::parse(unit).is_none() || Unit::parse(unit) != Unit::parse(own))
+        });
+        Some(Goal { column, unit: unit.map(str::to_owned) })
     };
     if let Some((first, rest)) = block.split_first() {
-        let names: Vec<Option<Column>> = first.iter().map(by_name).collect();
+        let names: Vec<Option<Goal>> = first.iter().map(by_name).collect();
         let num_names = names.iter().flatten().count();
-        let has_number = first.iter().any(|text| parse_number(text).is_ok());
-        let is_header = !has_number && num_names > 0 && 2 * num_names >= first.len() && !rest.is_empty();
-        if is_header {
+        let has_number = first.iter().any(|text| parse_quantity(text).is_ok());
+        // One word alone may as well be a value: a label, an edge.
+        let has_unit = first.iter().any(|text| unit_of_name(text).is_some_and(|unit| Unit::parse(unit).is_some()));
+        let names_own_column = match &names[..] {
+            [Some(target)] => spot.columns.get(spot.column_idx) == Some(&target.column),
+            _ => false,
+        };
+        let is_meant = num_names >= 2 || (num_names == 1 && (has_unit || names_own_column));
+        if is_meant && !has_number && 2 * num_names >= first.len() && !rest.is_empty() {
             return (names, rest);
         }
     }
     let width = block.iter().map(Vec::len).max().unwrap_or(0);
-    let columns = (0..width).map(|idx| spot.columns.get(spot.column_idx + idx).copied()).collect();
+    let target = |column: &Column| Goal { column: *column, unit: None };
+    let columns = (0..width).map(|idx| spot.columns.get(spot.column_idx + idx).map(target)).collect();
     (columns, block)
+}
+
+/// What stands in brackets, or behind a slash, in the name of a column.
+fn unit_of_name(text: &str) -> Option<&str> {
+    let (_, unit) = text.split_once(['(', '[', '/'])?;
+    Some(unit.trim().trim_end_matches([')', ']']).trim()).filter(|unit| !unit.is_empty())
 }
 
 /// The numbers of an added pose that the block does not have, as empty cells to be filled in.
 fn missing_numbers<'a>(
     session: &'a Session,
     place: Place,
-    columns: &'a [Option<Column>],
+    columns: &'a [Option<Goal>],
     texts: &'a [String],
 ) -> impl Iterator<Item = TypedCell> + 'a {
-    let has =
-        move |column: Column| texts.iter().zip(columns).any(|(text, there)| *there == Some(column) && !text.is_empty());
+    let has = move |column: Column| {
+        let is_it = |target: &Option<Goal>| target.as_ref().is_some_and(|target| target.column == column);
+        texts.iter().zip(columns).any(|(text, target)| is_it(target) && !text.is_empty())
+    };
     (0..session.robot.notation.num_numbers())
         .map(Column::Number)
         .filter(move |column| !has(*column))

@@ -12,9 +12,9 @@ use crate::session::limits::{self, Quantity};
 use crate::session::model::{Capture, Edge, Reading, Session};
 use crate::session::{EditRefusal, Place};
 
-use super::number::{NotANumber, parse_number};
+use super::number::{NotANumber, Unit, parse_quantity};
 use super::paste::no_reading;
-use super::{Column, capture_at, has_profile, point_of};
+use super::{Column, capture_at, column_unit, has_profile, point_of};
 
 /// A text typed or pasted into a cell.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -40,6 +40,14 @@ pub enum CellProblem {
         found: f64,
         /// What it may be.
         expected: String,
+    },
+    /// A number with a unit that the column cannot have.
+    #[error("found \"{found}\", needed a number in {needed}")]
+    UnitUnfit {
+        /// The text.
+        found: String,
+        /// The column's unit.
+        needed: &'static str,
     },
     /// Four numbers that are no rotation (yet).
     #[error(
@@ -194,11 +202,20 @@ fn within(value: f64, quantity: &Quantity) -> Result<f64, CellProblem> {
     }
 }
 
+/// A number in the unit of its column, whichever it was written in.
+fn number_in(text: &str, column_unit: &'static str) -> Result<f64, CellProblem> {
+    let (value, unit) = parse_quantity(text)?;
+    let Some(unit) = unit else { return Ok(value) };
+    let factor = Unit::parse(column_unit).and_then(|own| unit.factor_to(own));
+    let needed = if column_unit.is_empty() { "no unit" } else { column_unit };
+    factor.map(|factor| value * factor).ok_or_else(|| CellProblem::UnitUnfit { found: found(text), needed })
+}
+
 fn step(text: &str) -> Result<Option<f64>, CellProblem> {
     if text.trim().is_empty() {
         return Ok(None);
     }
-    within(parse_number(text)?, &limits::STEP_MM).map(Some)
+    within(number_in(text, "mm")?, &limits::STEP_MM).map(Some)
 }
 
 /// Labels may change places within one batch, so each is held against what the others become.
@@ -215,23 +232,29 @@ fn read_labels(read: &mut ReadCells, session: &Session, typed: &[&TypedCell]) {
     if pending.is_empty() {
         return;
     }
-    loop {
-        let mut count: HashMap<&str, usize> = HashMap::new();
-        for (station_idx, station) in session.stations.iter().enumerate() {
-            let label = pending.get(&station_idx).map_or(station.label.as_str(), |cell| cell.text.trim());
-            *count.entry(label).or_default() += 1;
-        }
-        let taken: Vec<usize> = (pending.iter())
-            .filter(|(_, cell)| count.get(cell.text.trim()).is_some_and(|count| *count > 1))
-            .map(|(station_idx, _)| *station_idx)
-            .collect();
-        if taken.is_empty() {
-            break;
-        }
-        for station_idx in taken {
+    let own_label = |station_idx: usize| session.stations[station_idx].label.as_str();
+    let mut count: HashMap<&str, usize> = HashMap::new();
+    let mut wanting: HashMap<&str, Vec<usize>> = HashMap::new();
+    for station_idx in 0..session.stations.len() {
+        let label = pending.get(&station_idx).map_or_else(|| own_label(station_idx), |cell| cell.text.trim());
+        *count.entry(label).or_default() += 1;
+    }
+    for (station_idx, cell) in &pending {
+        wanting.entry(cell.text.trim()).or_default().push(*station_idx);
+    }
+    // Who is refused keeps the own label, which others may have wanted: these are looked at once more.
+    let mut taken: Vec<&str> =
+        pending.values().map(|cell| cell.text.trim()).filter(|label| count.get(label) > Some(&1)).collect();
+    while let Some(label) = taken.pop() {
+        for station_idx in wanting.remove(label).unwrap_or_default() {
             if let Some(cell) = pending.remove(&station_idx) {
-                let label = cell.text.trim().to_owned();
-                read.refuse(cell, CellProblem::Label(EditRefusal::LabelTaken { label }));
+                read.refuse(cell, CellProblem::Label(EditRefusal::LabelTaken { label: label.to_owned() }));
+            }
+            let own = own_label(station_idx);
+            let num_own = count.entry(own).or_default();
+            *num_own += 1;
+            if *num_own > 1 {
+                taken.push(own);
             }
         }
     }
@@ -299,7 +322,7 @@ fn read_pose(
 }
 
 fn pose_number(text: &str, idx: usize, notation: &PoseNotation) -> Result<f64, CellProblem> {
-    let value = parse_number(text)?;
+    let value = number_in(text, column_unit(notation, Column::Number(idx)))?;
     match (idx, notation.orientation) {
         // In millimetres, so that the limit is that of the document.
         (0..3, _) => within(value * notation.length_unit.in_mm(), &limits::POSITION_MM)?,
@@ -320,7 +343,7 @@ fn pose_value(
         within(*coordinate, &limits::POSITION_MM)?;
     }
     // Where only the position was typed, the rotation stays to the last bit.
-    if !has_new_orientation && !notation.is_inverse {
+    if !has_new_orientation {
         let base_from_flange = Transform::from_parts(read.translation_mm(), capture.base_from_flange.rotation());
         return Ok(CellValue::Pose(base_from_flange, capture.written_angles));
     }
@@ -335,24 +358,24 @@ fn read_point(read: &mut ReadCells, place: Place, capture: &Capture, cells: &BTr
     }
     let present = point_of(capture);
     let mut coordinates: [Option<f64>; 3] = std::array::from_fn(|axis| present.map(|point| point[axis]));
-    let mut is_readable = true;
+    let mut unreadable = Vec::new();
     for cell in &typed {
         let Column::Point(axis @ 0..3) = cell.column else { continue };
         coordinates[axis] = None;
         if cell.text.trim().is_empty() {
             continue;
         }
-        let value = parse_number(&cell.text).map_err(CellProblem::from).and_then(|v| within(v, &limits::POINT_MM));
+        let value = number_in(&cell.text, "mm").and_then(|value| within(value, &limits::POINT_MM));
         match value {
             Ok(value) => coordinates[axis] = Some(value),
             Err(reason) => {
-                is_readable = false;
+                unreadable.push(cell.column);
                 read.refuse(cell, reason);
             }
         }
     }
     let value = match (coordinates, &capture.reading) {
-        _ if !is_readable => Err(CellProblem::OthersUnreadable),
+        _ if !unreadable.is_empty() => Err(CellProblem::OthersUnreadable),
         ([None, None, None], reading) if !matches!(reading, Reading::Point(_)) => return,
         (_, Reading::Profile(profile)) if has_profile(&capture.reading) => {
             Err(CellProblem::HasProfile { num_points: profile.len() })
@@ -366,8 +389,7 @@ fn read_point(read: &mut ReadCells, place: Place, capture: &Capture, cells: &BTr
         Ok(reading) => read.values.push((place, CellValue::Reading(reading))),
         Err(reason) => {
             for cell in typed {
-                let has_own_reason = read.refused.iter().any(|refused| refused.cell == *cell);
-                if !has_own_reason {
+                if !unreadable.contains(&cell.column) {
                     read.refuse(cell, reason.clone());
                 }
             }

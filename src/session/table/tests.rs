@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::block::{block_text, is_for_import, parse_block};
+use super::block::{MAX_CELLS, TooManyCells, block_text, is_for_import};
 use super::fill::{fill_down, next_label};
 use super::order::{natural, order_by};
 use super::paste::{Spot, paste};
@@ -15,6 +15,19 @@ use crate::session::{Edit, parse, samples};
 fn printed() -> Session {
     let sample = samples::ALL.iter().find(|sample| sample.file_name == "lin-mu-2019-table-1.json").expect("a sample");
     parse(sample.json.as_bytes(), sample.file_name).expect("a session")
+}
+
+fn parse_block(text: &str) -> Vec<Vec<String>> {
+    super::block::parse_block(text).expect("few cells")
+}
+
+/// What a session becomes if a text is pasted into its folded table.
+fn pasted_into(session: &Session, row_idx: usize, column: Column, text: &str) -> (Session, super::paste::Pasted) {
+    let (rows, columns) = (rows(session, |_| false), columns(session));
+    let column_idx = columns.iter().position(|there| *there == column).expect("a column");
+    let pasted = paste(session, &Spot { rows: &rows, columns: &columns, row_idx, column_idx }, &parse_block(text));
+    let changed = pasted.edit.as_ref().map_or_else(|| session.clone(), |edit| edit.apply(session).expect("an edit"));
+    (changed, pasted)
 }
 
 fn place(station_idx: usize) -> Place {
@@ -180,6 +193,13 @@ fn blocks_of_any_spreadsheet() {
     assert_eq!(rows("12,5"), [["12,5"]]);
     assert_eq!(rows("\"a\tb\"\t\"c\"\"d\"\n"), [["a\tb", "c\"d"]]);
     assert_eq!(rows("a\rb"), [["a"], ["b"]]);
+    for one in ["1,234.5", "1.234,5", "1,234.5 mm"] {
+        assert_eq!(rows(one), [[one]]);
+    }
+    assert_eq!(rows("1,234.5\n2,345.6\n"), [["1,234.5"], ["2,345.6"]]);
+    for separator in ["\t", "\n"] {
+        assert_eq!(super::block::parse_block(&separator.repeat(MAX_CELLS)), Err(TooManyCells));
+    }
     assert_eq!(rows(""), [[""]]);
     let block = vec![vec!["a\tb".to_owned(), "\"c".to_owned()], vec![String::new(), "d e".to_owned()]];
     assert_eq!(parse_block(&block_text(&block)), block);
@@ -269,4 +289,74 @@ fn sweeps_unfold_into_the_rows_of_their_captures() {
         &parse_block("1\n2"),
     );
     assert_eq!(pasted.num_left_out, 1, "a sweep has no pose of its own");
+}
+
+#[test]
+fn pasted_labels_may_change_places_with_those_of_new_stations() {
+    let (changed, pasted) = pasted_into(&printed(), 0, Column::Label, "6\n5\n4\n3\n2\n1");
+    let labels: Vec<&str> = changed.stations.iter().map(|station| station.label.as_str()).collect();
+    assert_eq!(labels, ["6", "5", "4", "3", "2", "1"]);
+    assert!(pasted.refused.iter().all(|(label, _)| label == "1"), "its pose is missing");
+}
+
+#[test]
+fn units_are_converted_or_refused() {
+    let session = printed();
+    let x = Column::Number(0);
+    for (text, expected) in [("0.5 m", "500"), ("12 mm", "12"), ("7", "7")] {
+        assert_eq!(super::text(&pasted_into(&session, 1, x, text).0, place(1), x), expected, "{text}");
+    }
+    let angle = Column::Number(3);
+    let (changed, _) = pasted_into(&session, 1, angle, "0.5 rad");
+    let shown = number(&changed, place(1), angle).expect("an angle");
+    assert!((shown - 0.5_f64.to_degrees()).abs() < 1e-9, "{shown}");
+    for (column, text) in [(x, "5°"), (x, "5 rad"), (angle, "5 mm"), (x, "5 kg")] {
+        assert_eq!(read(&session, &[(1, column, text)]).refused.len(), 1, "{text}");
+    }
+    let (changed, pasted) = pasted_into(&session, 0, Column::Label, "x (m)\ty (m)\n0.1\t0.2\n0.3\t400 mm");
+    assert_eq!(pasted.refused, []);
+    let shown =
+        [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(row, idx)| super::text(&changed, place(row), Column::Number(idx)));
+    assert_eq!(shown, ["100", "200", "300", "400"]);
+    let (_, pasted) = pasted_into(&session, 0, Column::Label, "x (in)\ty (rad)\n1\t2");
+    assert_eq!(pasted.refused.len(), 2);
+}
+
+#[test]
+fn one_word_alone_is_a_value_unless_it_names_its_column() {
+    let session = printed();
+    let labels = |text: &str| {
+        let changed = pasted_into(&session, 0, Column::Label, text).0;
+        changed.stations.into_iter().map(|station| station.label).take(3).collect::<Vec<_>>()
+    };
+    assert_eq!(labels("x\ny\nz"), ["x", "y", "z"]);
+    assert_eq!(labels("station\ny\nz"), ["y", "z", "3"]);
+    let (_, pasted) = pasted_into(&session, 0, Column::Point(2), "1\t2\t3");
+    assert_eq!(pasted.num_left_out, 2, "each is counted once");
+}
+
+#[test]
+fn the_rotation_of_an_inverse_pose_stays_where_only_its_position_is_typed() {
+    let mut session = printed();
+    session.robot.notation.is_inverse = true;
+    let before = &session.stations[0].captures[0];
+    let read = read(&session, &[(0, Column::Number(0), "12")]);
+    let [(_, CellValue::Pose(pose, written))] = &read.values[..] else { panic!("{read:?}") };
+    assert_eq!(pose.rotation(), before.base_from_flange.rotation());
+    assert_eq!(*written, before.written_angles);
+}
+
+#[test]
+fn a_refused_label_refuses_those_that_counted_on_it() {
+    // 5 cannot become 1's old label's owner: 1 stays, so 2 cannot be 1, so 3 cannot be 2.
+    let read = read(&printed(), &[(0, Column::Label, "5"), (1, Column::Label, "1"), (2, Column::Label, "2")]);
+    assert_eq!((read.values.len(), read.refused.len()), (0, 3));
+}
+
+#[test]
+fn the_greatest_number_is_not_counted_on() {
+    let mut session = printed();
+    session.stations[0].label = u64::MAX.to_string();
+    let filled = fill_down(&session, &[Row::Station(0), Row::Station(1)], &[Column::Label]);
+    assert_eq!(filled[0].text, format!("{} 2", u64::MAX));
 }

@@ -19,7 +19,10 @@ pub const UNFOLD_ALL: &str = "Unfold all";
 /// Button.
 pub const FOLD_ALL: &str = "Fold all";
 /// A session without stations.
-pub const NO_STATIONS: &str = "No stations yet: add one, or paste rows from a spreadsheet with Ctrl+V.";
+pub const EMPTY: &str = "No stations yet";
+/// How a session without stations gets some.
+pub const NO_STATIONS: &str =
+    "Add a station (Insert), paste a table of poses (Ctrl+V), or import files of poses and profiles (Ctrl+I).";
 
 /// Button.
 pub const ADD: &str = "Add station";
@@ -222,6 +225,12 @@ pub fn pasted(
         (num_left_out > 0, format!("{num_left_out} had no cell to go to.")),
     ];
     parts.into_iter().filter(|(is_so, _)| *is_so).map(|(_, part)| part).collect::<Vec<_>>().join(" ")
+}
+
+/// Nothing was pasted.
+#[must_use]
+pub fn not_pasted(reason: &dyn std::fmt::Display) -> String {
+    format!("Nothing was pasted: {reason}.")
 }
 
 /// Title's right side.

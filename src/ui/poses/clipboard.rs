@@ -37,11 +37,18 @@ impl Sheet {
 
     /// Takes a text from the clipboard: cells for the table, or something for the import.
     pub fn paste(&mut self, session: &Session, text: &str, commands: &mut Vec<Command>) {
-        if is_for_import(text) {
+        // Into an empty table nothing can be placed by its neighbours: the preview shows what becomes of it.
+        if is_for_import(text) || session.stations.is_empty() {
             commands.push(Command::ImportText(text.to_owned()));
             return;
         }
-        let block = parse_block(text);
+        let block = match parse_block(text) {
+            Ok(block) => block,
+            Err(refusal) => {
+                self.said = Some(words::not_pasted(&refusal));
+                return;
+            }
+        };
         let rows = self.cursor.rows();
         let columns = self.cursor.columns(self.view.columns.len());
         let column_idx = if self.cursor.has_whole_rows { 0 } else { *columns.start() };
@@ -90,15 +97,26 @@ impl Sheet {
         let first = if self.cursor.has_whole_rows { 0 } else { *self.cursor.columns(self.view.columns.len()).start() };
         let width = if line.len() == 1 { self.selected_columns().len() } else { line.len() };
         let columns = &self.view.columns[first..(first + width).min(self.view.columns.len())];
+        let rows = self.selected_rows();
         let mut typed = Vec::new();
-        for row in self.selected_rows() {
+        let mut num_left_out = 0;
+        for row in &rows {
             for (column, text) in columns.iter().zip(line.iter().cycle()) {
-                if has_cell(session, row, *column) {
+                if !has_cell(session, *row, *column) {
+                    // One value for many cells goes to those that there are.
+                    num_left_out += usize::from(line.len() > 1 && !text.is_empty());
+                } else if column.can_be_empty() || !text.is_empty() {
                     typed.push(TypedCell { place: row.place(), column: *column, text: text.clone() });
                 }
             }
+            num_left_out += line.iter().skip(columns.len()).filter(|text| !text.is_empty()).count();
         }
+        let size = [rows.len(), columns.len()];
         self.enter(session, typed, commands);
+        if num_left_out > 0 {
+            let num_refused = rows.iter().map(|row| self.pending.of_place(session, row.place()).len()).sum();
+            self.said = Some(words::pasted(size, num_refused, 0, num_left_out));
+        }
     }
 }
 

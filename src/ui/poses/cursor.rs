@@ -31,13 +31,17 @@ impl Cursor {
         Self { row, column, anchor_row, anchor_column: column, has_whole_rows: true, more_rows: BTreeSet::new() }
     }
 
-    /// Everything; the cursor stays.
+    /// Whole rows, not all of them neighbours; the cursor keeps its column.
+    #[must_use]
+    pub fn over_picked_rows(rows: BTreeSet<usize>, column: usize) -> Self {
+        let first = rows.first().copied().unwrap_or(0);
+        Self { more_rows: rows, ..Self::over_rows(&(first..=first), column) }
+    }
+
+    /// Everything, with the first cell as the cursor.
     pub fn select_all(&mut self, num_rows: usize, num_columns: usize) {
-        let (row, column) = (self.row, self.column);
-        *self = Self::at(row, column);
-        // The rectangle runs from corner to corner, so the cursor goes to the first.
-        (self.row, self.column) = (0, 0);
-        (self.anchor_row, self.anchor_column) = (num_rows.saturating_sub(1), num_columns.saturating_sub(1));
+        *self = Self::at(num_rows.saturating_sub(1), num_columns.saturating_sub(1));
+        self.go_to(0, 0, true);
     }
 
     /// Goes to a cell, with the rectangle up to there if `extends`.

@@ -13,6 +13,7 @@ use crate::text::conventions::poses_title;
 use crate::text::poses as words;
 use crate::ui::theme::{self, Palette, ROW_HEIGHT};
 
+use super::ask::Ask;
 use super::checks::Checks;
 use super::editor::{CELL_PADDING, ChoiceAnswer};
 use super::sheet::Sheet;
@@ -190,6 +191,11 @@ impl Grid<'_> {
             }
             Self::rules(ui, sheet, geometry, ink, first, last);
         }
+        if num_rows == 0 {
+            let at = geometry.viewport.center() - vec2(0.0, ROW_HEIGHT);
+            ui.painter().text(at, Align2::CENTER_BOTTOM, words::EMPTY, ink.body.clone(), ink.palette.text);
+            ui.painter().text(at, Align2::CENTER_TOP, words::NO_STATIONS, ink.small.clone(), ink.palette.text_dim);
+        }
         self.cursor(ui, sheet, geometry, ink);
         Self::editor(ui, sheet, geometry, commands);
     }
@@ -323,8 +329,7 @@ impl Grid<'_> {
         let at = pos2(check_left + f32::from(CELL_PADDING), rect.center().y);
         painter.text(at, Align2::LEFT_CENTER, words::CHECK, ink.small.clone(), palette.text_dim);
         if let Some(column) = clicked {
-            sheet.commit(commands);
-            sheet.sort(session, column, commands);
+            sheet.ask(ui.ctx(), self.document, Ask::Sort(column), commands);
             sheet.takes_keyboard = true;
         }
     }

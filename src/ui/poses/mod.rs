@@ -1,5 +1,6 @@
 //! Step Poses: the stations in the robot's own convention, edited as in a spreadsheet.
 
+mod ask;
 mod cells;
 mod checks;
 mod clipboard;

@@ -47,13 +47,21 @@ impl PosesState {
 /// Draws the step.
 pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut PosesState) {
     let Some(document) = context.workbench.document() else { return };
+    state.sheet.refresh(document);
+    state.sheet.carry_out_asked(ui.ctx(), document, context.commands);
+    let num_commands = context.commands.len();
     convention::bar(ui, context, &mut state.convention);
+    if context.commands.len() > num_commands {
+        // A number is read in the notation in which it was typed.
+        let changes = context.commands.split_off(num_commands);
+        state.sheet.commit(context.commands);
+        context.commands.extend(changes);
+    }
     show_table(ui, context, document, state);
 }
 
 fn show_table(ui: &mut Ui, context: &mut PanelContext<'_>, document: &Document, state: &mut PosesState) {
     let PosesState { sheet, checks, keyboard, seen, .. } = state;
-    sheet.refresh(document);
     checks.refresh(context.workbench, context.selection.method);
     let id = Id::unique("pose table");
     follow_selection(context, sheet, *seen);
@@ -121,8 +129,7 @@ fn take_keys(
     let arrows = [Key::ArrowUp, Key::ArrowDown, Key::ArrowLeft, Key::ArrowRight];
     let is_wanted = ui.input(|input| {
         let takes = |key: &Key| input.modifiers == Modifiers::NONE && input.key_pressed(*key);
-        let is_pasted = |event: &egui::Event| matches!(event, egui::Event::Paste(_));
-        arrows.iter().any(takes) || (sheet.view.rows.is_empty() && input.events.iter().any(is_pasted))
+        arrows.iter().any(takes)
     });
     if is_wanted {
         ui.memory_mut(|memory| memory.request_focus(id));

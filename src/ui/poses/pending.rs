@@ -99,7 +99,8 @@ impl Pending {
         self.of_station(label).next().is_none() && self.held_back.remove(label)
     }
 
-    /// Follows the document: labels that were changed are followed, and numbers that mean something else now are dropped.
+    /// Follows the document: labels that were changed are followed; texts of stations that are gone, and
+    /// numbers that mean something else now, are dropped.
     pub fn follow(&mut self, before: &Session, now: &Session) {
         if self.texts.is_empty() && self.held_back.is_empty() {
             return;
@@ -115,6 +116,10 @@ impl Pending {
                 self.held_back.insert(new.to_owned());
             }
         }
+        // A station that comes to bear the label of one that went is another.
+        let labels: BTreeSet<&str> = now.stations.iter().map(|station| station.label.as_str()).collect();
+        self.texts.retain(|key, _| labels.contains(key.label.as_str()));
+        self.held_back.retain(|label| labels.contains(label.as_str()));
         if before.robot.notation != now.robot.notation {
             self.texts.retain(|key, _| !matches!(key.column, Column::Number(_)));
         }

@@ -1,7 +1,6 @@
 //! What the pose table does with what it is asked: each of these ends in at most one edit of the document.
 
-use std::collections::HashSet;
-use std::ops::RangeInclusive;
+use std::collections::{BTreeSet, HashSet};
 use std::sync::Arc;
 
 use crate::app::{Command, Document};
@@ -13,6 +12,7 @@ use crate::session::table::{self, Column, TypedCell, has_cell, read_cells};
 use crate::session::{Edit, Place, Reading, Row, Session, Station};
 use crate::text::poses as words;
 
+use super::ask::Ask;
 use super::cursor::Cursor;
 use super::editor::{Choice, Editor};
 use super::pending::Pending;
@@ -40,7 +40,9 @@ pub struct Sheet {
     /// The sweep to be folded or unfolded once the frame is drawn.
     pub folds: Option<String>,
     /// Stations to be selected once the document has them.
-    selects: Option<RangeInclusive<usize>>,
+    selects: Option<BTreeSet<usize>>,
+    /// What was asked for, to be done once the document has what was typed before.
+    pub(super) asked: Option<Ask>,
     /// The cells to be selected once the document has them.
     pub(super) next_cursor: Option<Cursor>,
     num_editors: u64,
@@ -60,11 +62,14 @@ impl Sheet {
         }
         if let Some(stations) = self.selects.take() {
             let row_of = |station_idx| self.view.row_of(Place { station_idx, capture_idx: 0 });
-            if let (Some(first), Some(last)) = (row_of(*stations.start()), row_of(*stations.end())) {
+            let rows: BTreeSet<usize> = stations.into_iter().filter_map(row_of).collect();
+            if let (Some(first), Some(last)) = (rows.first().copied(), rows.last().copied()) {
                 self.cursor = if first == last {
                     Cursor::at(first, self.cursor.column)
-                } else {
+                } else if last - first + 1 == rows.len() {
                     Cursor::over_rows(&(first..=last), self.cursor.column)
+                } else {
+                    Cursor::over_picked_rows(rows, self.cursor.column)
                 };
                 self.brings_into_view = true;
             }
@@ -333,7 +338,7 @@ impl Sheet {
             )
         };
         let at = last.map_or(session.stations.len(), |station_idx| station_idx + 1);
-        self.selects = Some(at..=at);
+        self.selects = Some(BTreeSet::from([at]));
         push(Edit::InsertStations { at, stations: vec![station] }, commands);
     }
 
@@ -344,7 +349,7 @@ impl Sheet {
         let whole: HashSet<usize> = stations_among(&rows);
         rows.retain(|row| matches!(row, Row::Station(_)) || !whole.contains(&row.place().station_idx));
         if let [Row::Station(station_idx)] = rows[..] {
-            self.selects = Some(station_idx + 1..=station_idx + 1);
+            self.selects = Some(BTreeSet::from([station_idx + 1]));
         }
         if !rows.is_empty() {
             push(Edit::Duplicate(rows), commands);
@@ -384,7 +389,7 @@ impl Sheet {
                 .filter(|idx| is_selected.contains(idx))
                 .for_each(|idx| order.swap(idx, idx + 1));
         }
-        self.selects = Some(if is_up { first - 1..=last - 1 } else { first + 1..=last + 1 });
+        self.selects = Some(selected.iter().map(|idx| if is_up { idx - 1 } else { idx + 1 }).collect());
         push(Edit::Reorder(order), commands);
     }
 

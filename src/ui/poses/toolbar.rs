@@ -8,11 +8,11 @@ use crate::app::{Command, Document};
 use crate::text::poses as words;
 use crate::ui::theme;
 
+use super::ask::Ask;
 use super::sheet::Sheet;
 
 /// Draws the buttons in a row. Answers whether one of them was used.
 pub fn show(ui: &mut Ui, sheet: &mut Sheet, document: &Document, commands: &mut Vec<Command>) -> bool {
-    let session = &document.session;
     let has_rows = !sheet.view.rows.is_empty();
     ui.spacing_mut().item_spacing.x = 4.0;
     ui.spacing_mut().interact_size.y = theme::ROW_HEIGHT;
@@ -26,34 +26,25 @@ pub fn show(ui: &mut Ui, sheet: &mut Sheet, document: &Document, commands: &mut 
         is_used.set(is_used.get() || is_clicked);
         is_clicked
     };
-    if button(ui, words::ADD, words::ADD_HINT, true) {
-        sheet.commit(commands);
-        sheet.add(session, commands);
-    }
-    if button(ui, words::DUPLICATE, words::DUPLICATE_HINT, has_rows) {
-        sheet.duplicate(commands);
-    }
-    if button(ui, words::DELETE, words::DELETE_HINT, has_rows) {
-        sheet.remove(commands);
-    }
+    let mut asked = None;
+    let mut offer = |ui: &mut Ui, label: &str, hint: &str, is_enabled: bool, ask: Option<Ask>| {
+        if button(ui, label, hint, is_enabled) {
+            asked = ask;
+        }
+    };
+    let sorting = sheet.cell().map(|(_, column)| Ask::Sort(column));
+    offer(ui, words::ADD, words::ADD_HINT, true, Some(Ask::Add));
+    offer(ui, words::DUPLICATE, words::DUPLICATE_HINT, has_rows, Some(Ask::Duplicate));
+    offer(ui, words::DELETE, words::DELETE_HINT, has_rows, Some(Ask::Remove));
     ui.add_space(8.0);
-    if button(ui, "↑", words::MOVE_UP_HINT, has_rows) {
-        sheet.shift(session, true, commands);
-    }
-    if button(ui, "↓", words::MOVE_DOWN_HINT, has_rows) {
-        sheet.shift(session, false, commands);
-    }
-    if button(ui, words::SORT, words::SORT_BUTTON_HINT, has_rows)
-        && let Some((_, column)) = sheet.cell()
-    {
-        sheet.sort(session, column, commands);
-    }
-    if button(ui, words::FILL, words::FILL_HINT, has_rows) {
-        sheet.fill(session, commands);
-    }
+    offer(ui, "↑", words::MOVE_UP_HINT, has_rows, Some(Ask::Shift { is_up: true }));
+    offer(ui, "↓", words::MOVE_DOWN_HINT, has_rows, Some(Ask::Shift { is_up: false }));
+    offer(ui, words::SORT, words::SORT_BUTTON_HINT, has_rows, sorting);
+    offer(ui, words::FILL, words::FILL_HINT, has_rows, Some(Ask::Fill));
     ui.add_space(8.0);
-    if button(ui, words::COPY, words::COPY_HINT, has_rows) {
-        ui.ctx().copy_text(sheet.copied(session));
+    offer(ui, words::COPY, words::COPY_HINT, has_rows, Some(Ask::Copy));
+    if let Some(ask) = asked {
+        sheet.ask(ui.ctx(), document, ask, commands);
     }
     if button(ui, words::PASTE, words::PASTE_HINT, true) {
         ui.ctx().send_viewport_cmd(egui::ViewportCommand::RequestPaste);

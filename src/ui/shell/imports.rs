@@ -72,6 +72,8 @@ impl Shell {
         match pasted {
             Some(text) if was_asked_for || self.is_paste_an_import(ctx) => {
                 self.paste_patience = None;
+                // Taken: the pose table must not paste it as well.
+                ctx.input_mut(|input| input.events.retain(|event| !matches!(event, Event::Paste(_))));
                 commands.push(Command::ImportText(text));
             }
             _ => {
