@@ -180,7 +180,11 @@ pub(super) fn read(
                 at,
                 label: label.map(Cow::Borrowed),
                 numbers: &numbers,
-                frames: OwnFrames { is_in_base: base == Some(0.0), is_of_flange: tool == Some(0.0) },
+                frames: OwnFrames {
+                    is_in_base: base == Some(0.0),
+                    is_of_flange: tool == Some(0.0),
+                    ..OwnFrames::default()
+                },
                 ..RawPose::default()
             },
         );

@@ -100,7 +100,8 @@ pub(super) fn read(
         let (x, z) = x_and_z(layout);
         (x, vec![z])
     };
-    let num_rows = records(text).count();
+    // Room for no more rows than the text could fill, were it all cells.
+    let num_rows = records(text).count().min(text.len() / z_columns.len().max(1));
     let mut x_mm: Vec<f64> = Vec::with_capacity(num_rows);
     let mut z_mm: Vec<Vec<f64>> = z_columns.iter().map(|_| Vec::with_capacity(num_rows)).collect();
     let mut cells = Vec::new();
@@ -123,9 +124,12 @@ pub(super) fn read(
         if x.is_none() {
             fail(x_column);
         }
+        // A row that ends early has no more valid points; one of less than half its cells is another kind of row.
+        if 2 * cells.len() < layout.num_columns {
+            fail(cells.len());
+        }
         row.clear();
         for column in &z_columns {
-            // A row that ends early has no more valid points.
             let text = cells.get(*column).map_or("", |cell| cell.text);
             match z_of(text, layout.has_decimal_comma) {
                 Ok(z) => row.push(z.and_then(within).map_or(f64::NAN, |z| z * z_sign)),
