@@ -331,6 +331,35 @@ fn a_number_that_overflows_in_other_units_is_listed() {
 }
 
 #[test]
+fn units_that_a_header_names_are_those_of_the_numbers() {
+    let points = import_text("x,y,z,w,p,r,px [m],py [m],pz [m]\n500,0,300,10,20,170,0.01,0,0.08\n");
+    let Reading::Point(point) = &points.stations[0].captures[0].reading else { panic!("a point") };
+    assert!((point.x - 10.0).abs() < 1e-12 && (point.z - 80.0).abs() < 1e-12, "{point}");
+    let with_profile = |head: &str| {
+        import_files(&[
+            ("p.csv", &format!("{head}\n-1000,58000,7\n0,57000,8\n1000,58000,9\n")),
+            ("poses.csv", "no,x,y,z,w,p,r\n1,500,0,300,10,20,170\n"),
+        ])
+    };
+    let micrometres = with_profile("x [um],z [um],intensity");
+    let Reading::Profile(profile) = &micrometres.stations[0].captures[0].reading else { panic!("a profile") };
+    assert_eq!(profile.x_mm(), [-1.0, 0.0, 1.0]);
+    assert_eq!(with_profile("x [px],z [px],intensity").problems[0].found, "px");
+    // W, P and R are FANUC's, who has degrees, however small they are.
+    let small = import_text("label,x,y,z,W,P,R\nA,500,0,300,2,0,0\nB,510,0,300,-3,5,0\n,,,,,,\n");
+    assert!(small.problems.is_empty(), "{:?}", small.problems);
+    let notation = small.options.notation.expect("known");
+    assert_eq!(notation.angle_unit, handeye::geometry::notation::AngleUnit::Degrees);
+}
+
+#[test]
+fn a_number_sign_in_a_name_begins_no_comment() {
+    let imported =
+        import_text("Waypoint #1 = p[0.1,0.2,0.3,1,0,0]\n# p[9,9,9,1,0,0]\nb=p[0.1,0.2,0.4,1,0,0] # p[1,1,1,1,1,1]\n");
+    assert_eq!(imported.stations.len(), 2);
+}
+
+#[test]
 fn a_user_frame_that_is_given_moves_the_poses() {
     let (name, _, _, text) = examples().into_iter().find(|example| example.0 == "scan.ls").expect("an example");
     let sources = [Source { name, text: text.replace("UF : 0", "UF : 2") }];
@@ -542,6 +571,9 @@ mod command {
         check(&export, 0, &["poses", "profiles"]);
         check(&export, 2, &["poses.csv", "overwrite"]);
         let out = text(&folder.path().join("again.json"));
+        std::fs::copy(sample, &out).expect("copied");
+        check(&["export", &out, "--poses", &out, "--force"], 2, &["found a session file"]);
+        std::fs::remove_file(&out).expect("removed");
         check(&["import", &poses, &profiles, "--out", &out, "--radius-mm", "15"], 0, &["decimal comma"]);
         let (found, expected) =
             [out.as_str(), sample].map(|file| handeye(&["solve", file, "--method", "ball-bundle"]).stdout).into();

@@ -186,7 +186,7 @@ impl<'o> Import<'o> {
                 self.has_profile_columns |= has_columns;
                 filled.separator = Some(layout.separator);
                 filled.decimal_comma = Some(layout.has_decimal_comma);
-                filled.profile_length_unit = Some(profiles::length_unit(&layout, options));
+                filled.profile_length_unit = profiles::length_unit(&layout, has_columns, options);
                 preview.header.clone_from(layout.header.as_ref().unwrap_or(&Vec::new()));
             }
         }
