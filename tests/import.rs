@@ -353,6 +353,12 @@ fn units_that_a_header_names_are_those_of_the_numbers() {
 }
 
 #[test]
+fn kuka_positions_are_read_in_small_letters() {
+    let imported = import_text("decl pos p1={x 500,y 1,z 300,a 10,b 0,c 180}\n");
+    assert_eq!(heights(&imported), [("p1", 300.0)]);
+}
+
+#[test]
 fn a_number_sign_in_a_name_begins_no_comment() {
     let imported =
         import_text("Waypoint #1 = p[0.1,0.2,0.3,1,0,0]\n# p[9,9,9,1,0,0]\nb=p[0.1,0.2,0.4,1,0,0] # p[1,1,1,1,1,1]\n");
