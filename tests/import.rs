@@ -64,7 +64,7 @@ fn the_tables_of_the_paper_are_read_from_its_text() {
         let imported = import_file(file);
         assert_eq!(imported.parts[0].kind, Kind::PrintedTable);
         assert!(imported.problems.is_empty(), "{:?}", imported.problems);
-        let session = imported.into_session("table".to_owned(), Target::ball(30.0));
+        let session = imported.into_session("table".to_owned(), Target::ball(30.0)).expect("a session");
         let expected = sample(expected);
         assert_same_stations(&session, &expected);
         let (found, printed) = (session.published.expect("printed"), expected.published.expect("printed"));
@@ -195,6 +195,174 @@ fn programs_give_their_poses_in_their_makers_numbers() {
     let tool = ur.options.notation.and_then(|notation| notation.flange_from_tcp).expect("the script's tool");
     assert!((tool.translation_mm().z - 120.0).abs() < 1e-12);
     check_first(&ur, "Waypoint_1_p", &[0.5624, -0.1102, 0.1394]);
+}
+
+/// Labels and heights of the stations, mm.
+fn heights(imported: &Imported) -> Vec<(&str, f64)> {
+    let height = |station: &handeye::session::Station| station.captures[0].base_from_flange.translation_mm().z.round();
+    imported.stations.iter().map(|station| (station.label.as_str(), height(station))).collect()
+}
+
+#[test]
+fn every_target_of_an_abb_module_is_in_the_frames_of_its_own_move() {
+    let data = "PERS tooldata tScan:=[TRUE,[[0,0,150],[1,0,0,0]],[1,[0,0,1],[1,0,0,0],0,0,0]];\n\
+        PERS wobjdata wA:=[FALSE,TRUE,\"\",[[0,0,1000],[1,0,0,0]],[[0,0,0],[1,0,0,0]]];\n";
+    let target =
+        |name: &str| format!("CONST robtarget {name}:=[[500,0,300],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n");
+    let (p10, p20) = (target("p10"), target("p20"));
+    // The tool points down, so its flange is 150 mm above.
+    for (moves, expected) in [
+        ("MoveL p10,v100,fine,tool0;", [("p10", 300.0), ("p20", 300.0)]),
+        ("MoveL p10,v100,fine,tool0; MoveL p20,v100,fine,tScan;", [("p10", 300.0), ("p20", 450.0)]),
+        (
+            "MoveL p10,v100,fine,tScan; MoveJ P20,v100,fine,! to the cell\n  tScan\\WObj:=wA;",
+            [("p10", 450.0), ("p20", 1450.0)],
+        ),
+        ("MoveC p10,p20,v100,z10,\n tScan \\WObj:=wobj0;", [("p10", 450.0), ("p20", 450.0)]),
+    ] {
+        let text = format!("MODULE m\n{data}{p10}{p20}PROC MoveHome()\n{moves}\nENDPROC\nENDMODULE\n");
+        let imported = import_text(&text);
+        assert_eq!(heights(&imported), expected, "{moves}");
+        assert!(!imported.notes.iter().any(|note| matches!(note, Note::ToolTakenAsFlange { .. })), "{moves}");
+    }
+    let pose = "[[500,0,300],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]]";
+    let inline = format!("{data}robtarget x;\nMoveL\\Conc,{pose},v100,fine,tool0;\nMoveC {pose},{pose},v1,z1,tScan;\n");
+    assert_eq!(heights(&import_text(&inline)), [("1", 300.0), ("2", 450.0), ("3", 450.0)]);
+}
+
+#[test]
+fn the_work_object_of_a_module_is_in_its_own_units() {
+    let text = include_str!("data/import/work-object.mod");
+    let radians = PoseNotation {
+        angle_unit: handeye::geometry::notation::AngleUnit::Radians,
+        ..import_text(text).options.notation.expect("known")
+    };
+    let options = ImportOptions { notation: Some(radians), ..ImportOptions::default() };
+    let (found, expected) = (try_text(text, &options).expect("an import"), import_text(text));
+    for (found, expected) in found.stations.iter().zip(&expected.stations) {
+        assert_same_pose(&found.captures[0].base_from_flange, &expected.captures[0].base_from_flange);
+    }
+}
+
+fn import_files(files: &[(&str, &str)]) -> Imported {
+    let sources: Vec<Source> =
+        files.iter().map(|(name, text)| Source { name: (*name).to_owned(), text: (*text).to_owned() }).collect();
+    read(&sources, &ImportOptions::default(), &PoseNotation::default(), &mut Unwatched).expect("an import")
+}
+
+const TWO_POSES: &str = "no,x,y,z,w,p,r\n1,500,0,300,10,20,170\n2,510,5,300,20,20,170\n";
+
+#[test]
+fn no_pose_takes_two_profiles_and_folders_keep_theirs() {
+    let profile = |z: i32| format!("x,z\n-1,{z}\n0,{z}\n1,{z}\n");
+    let profiles: Vec<String> = (1..=4).map(profile).collect();
+    let first_z = |imported: &Imported| -> Vec<f64> {
+        let z = |station: &handeye::session::Station| match &station.captures[0].reading {
+            Reading::Profile(profile) if !profile.is_empty() => profile.z_mm()[0],
+            _ => 0.0,
+        };
+        imported.stations.iter().map(z).collect()
+    };
+    let folders = import_files(&[
+        ("d1/poses.csv", TWO_POSES),
+        ("d1/p1.csv", &profiles[0]),
+        ("d1/p2.csv", &profiles[1]),
+        ("d2/poses.csv", TWO_POSES),
+        ("d2/p1.csv", &profiles[2]),
+        ("d2/p2.csv", &profiles[3]),
+    ]);
+    assert_eq!(first_z(&folders), [1.0, 2.0, 3.0, 4.0]);
+    let twice = import_files(&[
+        ("poses.csv", TWO_POSES),
+        ("left/1.csv", &profiles[0]),
+        ("right/1.csv", &profiles[1]),
+        ("left/2.csv", &profiles[2]),
+    ]);
+    assert_eq!(first_z(&twice), [1.0, 3.0]);
+    assert!(twice.notes.contains(&Note::ProfilesWithoutPose { names: vec!["right/1.csv".to_owned()] }));
+}
+
+#[test]
+fn sweeps_end_with_their_source_and_keep_together_under_another_label() {
+    let rows = |labels: &[&str]| {
+        let row = |(idx, label): (usize, &&str)| format!("{label},{},0,300,10,20,170\n", 500 + idx);
+        format!("label,x,y,z,w,p,r\n{}", labels.iter().enumerate().map(row).collect::<String>())
+    };
+    for (files, expected) in [
+        (vec![rows(&["1", "1", "1", "2", "2"]); 2], vec![3, 2, 3, 2]),
+        (vec![rows(&["A", "A", "B", "A", "A"])], vec![2, 1, 2]),
+        (vec![rows(&["P"]); 3], vec![1, 1, 1]),
+    ] {
+        let names: Vec<String> = (0..files.len()).map(|idx| format!("f{idx}.csv")).collect();
+        let files: Vec<(&str, &str)> = names.iter().map(String::as_str).zip(files.iter().map(String::as_str)).collect();
+        let imported = import_files(&files);
+        let found: Vec<usize> = imported.stations.iter().map(|station| station.captures.len()).collect();
+        assert_eq!(found, expected);
+    }
+}
+
+#[test]
+fn a_session_gets_the_stations_of_the_other_sources() {
+    let session = include_str!("../sample_sessions/lin-mu-2019-table-1.json");
+    let imported = import_files(&[("a.json", session), ("b.csv", TWO_POSES)]);
+    let session = imported.into_session("other".to_owned(), Target::Point).expect("a session");
+    assert_eq!((session.stations.len(), session.target), (7, Target::ball(30.0)));
+}
+
+#[test]
+fn what_is_imported_can_be_saved_and_loaded() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("out.json");
+    let table = include_str!("data/import/printed-markdown.md");
+    for (files, target, num_stations) in [
+        (vec![("b.csv", TWO_POSES)], Target::RightAnglePlate, 2),
+        (vec![("table.md", table), ("b.csv", TWO_POSES)], Target::ball(30.0), 7),
+    ] {
+        let session = import_files(&files).into_session("s".to_owned(), target).expect("a session");
+        handeye::session::save(&session, &path).expect("saved");
+        assert_eq!(load(&path).expect("loaded").stations.len(), num_stations);
+    }
+}
+
+#[test]
+fn a_number_that_overflows_in_other_units_is_listed() {
+    let imported = import_text("p[0.1,0.2,0.3,1e308,0,0]\np[0.1,0.2,0.3,1,0,0]\n");
+    assert_eq!((imported.stations.len(), imported.problems[0].line), (1, 1));
+}
+
+#[test]
+fn units_that_a_header_names_are_those_of_the_numbers() {
+    let points = import_text("x,y,z,w,p,r,px [m],py [m],pz [m]\n500,0,300,10,20,170,0.01,0,0.08\n");
+    let Reading::Point(point) = &points.stations[0].captures[0].reading else { panic!("a point") };
+    assert!((point.x - 10.0).abs() < 1e-12 && (point.z - 80.0).abs() < 1e-12, "{point}");
+    let with_profile = |head: &str| {
+        import_files(&[
+            ("p.csv", &format!("{head}\n-1000,58000,7\n0,57000,8\n1000,58000,9\n")),
+            ("poses.csv", "no,x,y,z,w,p,r\n1,500,0,300,10,20,170\n"),
+        ])
+    };
+    let micrometres = with_profile("x [um],z [um],intensity");
+    let Reading::Profile(profile) = &micrometres.stations[0].captures[0].reading else { panic!("a profile") };
+    assert_eq!(profile.x_mm(), [-1.0, 0.0, 1.0]);
+    assert_eq!(with_profile("x [px],z [px],intensity").problems[0].found, "px");
+    // W, P and R are FANUC's, who has degrees, however small they are.
+    let small = import_text("label,x,y,z,W,P,R\nA,500,0,300,2,0,0\nB,510,0,300,-3,5,0\n,,,,,,\n");
+    assert!(small.problems.is_empty(), "{:?}", small.problems);
+    let notation = small.options.notation.expect("known");
+    assert_eq!(notation.angle_unit, handeye::geometry::notation::AngleUnit::Degrees);
+}
+
+#[test]
+fn kuka_positions_are_read_in_small_letters() {
+    let imported = import_text("decl pos p1={x 500,y 1,z 300,a 10,b 0,c 180}\n");
+    assert_eq!(heights(&imported), [("p1", 300.0)]);
+}
+
+#[test]
+fn a_number_sign_in_a_name_begins_no_comment() {
+    let imported =
+        import_text("Waypoint #1 = p[0.1,0.2,0.3,1,0,0]\n# p[9,9,9,1,0,0]\nb=p[0.1,0.2,0.4,1,0,0] # p[1,1,1,1,1,1]\n");
+    assert_eq!(imported.stations.len(), 2);
 }
 
 #[test]
@@ -409,6 +577,9 @@ mod command {
         check(&export, 0, &["poses", "profiles"]);
         check(&export, 2, &["poses.csv", "overwrite"]);
         let out = text(&folder.path().join("again.json"));
+        std::fs::copy(sample, &out).expect("copied");
+        check(&["export", &out, "--poses", &out, "--force"], 2, &["found a session file"]);
+        std::fs::remove_file(&out).expect("removed");
         check(&["import", &poses, &profiles, "--out", &out, "--radius-mm", "15"], 0, &["decimal comma"]);
         let (found, expected) =
             [out.as_str(), sample].map(|file| handeye(&["solve", file, "--method", "ball-bundle"]).stdout).into();

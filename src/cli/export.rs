@@ -65,6 +65,10 @@ fn export(args: &ExportArgs) -> Result<String, String> {
         notation.convention = convention;
         notation.orientation = OrientationForm::Angles;
     }
+    let same = |path: &PathBuf| path.canonicalize().ok();
+    if same(&args.poses).is_some_and(|poses| same(&args.file) == Some(poses)) || load(&args.poses).is_ok() {
+        return Err(text::over_a_session(&args.poses.display().to_string()));
+    }
     write_text(&args.poses, &poses_csv(&session, &notation, style), args.force).map_err(|error| error.to_string())?;
     let mut said = text::exported_line(&args.poses.display().to_string(), session.num_captures(), "pose");
     if let Some(folder) = &args.profiles {

@@ -10,9 +10,9 @@ use clap::ValueEnum;
 use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
 use crate::geometry::{PoseConvention, PoseNotation, Tcp, Transform};
 use crate::session::import::{
-    ImportError, ImportOptions, Imported, Kind, MAX_FILE_BYTES, Role, Separator, Source, read, read_paths,
+    ImportError, ImportOptions, Imported, Kind, MAX_FILE_BYTES, Part, Role, Separator, Source, read, read_paths,
 };
-use crate::session::{Edit, Session, Target, load, save};
+use crate::session::{Edit, EditRefusal, Session, SetupField, Target, load, save};
 use crate::text::import_cli as text;
 use crate::watch::Unwatched;
 
@@ -39,9 +39,9 @@ pub struct ImportArgs {
     /// The session's name; the first file's if none is given.
     #[arg(long)]
     pub name: Option<String>,
-    /// What was measured.
-    #[arg(long, value_enum, default_value_t = TargetArg::Ball)]
-    pub target: TargetArg,
+    /// What was measured; a ball if nothing is said.
+    #[arg(long, value_enum)]
+    pub target: Option<TargetArg>,
     /// The ball's radius, mm.
     #[arg(long)]
     pub radius_mm: Option<f64>,
@@ -347,10 +347,19 @@ fn read_as_told(sources: &[Source], args: &ReadingArgs) -> Result<Imported, Impo
     let options = args.options();
     let fallback = args.notation.map_or_else(PoseNotation::default, PoseNotation::of);
     let imported = read(sources, &options, &fallback, &mut Unwatched)?;
-    match args.notation(&imported.options.notation.unwrap_or(fallback)) {
-        None => Ok(imported),
-        notation => read(sources, &ImportOptions { notation, ..options }, &fallback, &mut Unwatched),
+    let recognised = imported.options.notation.unwrap_or(fallback);
+    let Some(notation) = args.notation(&recognised) else { return Ok(imported) };
+    // One notation is then that of all poses, so it must be the same whichever source it was recognised in.
+    let mut with_poses = imported.parts.iter().filter_map(|part| Some((part, part.notation?)));
+    let wanted = |recognised: &PoseNotation| args.notation(recognised).unwrap_or(*recognised);
+    if let Some((other, _)) = with_poses.find(|(_, recognised)| wanted(recognised) != notation) {
+        let mut parts =
+            imported.parts.iter().filter(|part| part.notation.is_some_and(|found| wanted(&found) == notation));
+        let name = |part: &Part| part.name.clone();
+        let first = parts.next().map(name).unwrap_or_default();
+        return Err(ImportError::SeveralNotations { first, other: name(other) });
     }
+    read(sources, &ImportOptions { notation: Some(notation), ..options }, &fallback, &mut Unwatched)
 }
 
 fn listing(imported: &Imported) -> String {
@@ -377,23 +386,24 @@ fn session(args: &ImportArgs, sources: &[Source], imported: Imported) -> Result<
         let session = load(path).map_err(|error| error.to_string())?;
         return with_stations(&session, imported.stations);
     }
-    if imported.session.is_some() {
-        return Ok(imported.into_session(String::new(), Target::Point));
-    }
     let target = match (args.target, args.radius_mm) {
-        (TargetArg::Ball, Some(radius_mm)) => Target::ball(radius_mm),
-        (TargetArg::Ball, None) => return Err(text::RADIUS_MISSING.to_owned()),
-        (TargetArg::Plate, _) => Target::RightAnglePlate,
-        (TargetArg::Point, _) => Target::Point,
+        (None | Some(TargetArg::Ball), Some(radius_mm)) => Some(Target::ball(radius_mm)),
+        (Some(TargetArg::Plate), _) => Some(Target::RightAnglePlate),
+        (Some(TargetArg::Point), _) => Some(Target::Point),
+        // A session says itself what was measured.
+        (None, None) if imported.session.is_some() => None,
+        (None | Some(TargetArg::Ball), None) => return Err(text::RADIUS_MISSING.to_owned()),
     };
+    let refused = |refusal: EditRefusal| refusal.to_string();
+    if imported.session.is_some() {
+        let name = args.name.clone().map(SetupField::Name);
+        let fields = name.into_iter().chain(target.map(SetupField::Target));
+        let session = imported.into_session(String::new(), Target::Point).map_err(refused)?;
+        return Edit::Several(fields.map(Edit::Setup).collect()).apply(&session).map_err(refused);
+    }
     let first = sources.first().map_or("", |source| source.name.as_str());
     let name = args.name.clone().unwrap_or_else(|| first.rsplit_once('.').map_or(first, |(stem, _)| stem).to_owned());
-    let mut session = imported.into_session(name, target);
-    let published = session.published.take();
-    let stations = std::mem::take(&mut session.stations);
-    // Stations of a plate need an edge each; adding them sees to it.
-    let session = with_stations(&session, stations)?;
-    Ok(Session { published, ..session })
+    imported.into_session(name, target.unwrap_or(Target::Point)).map_err(refused)
 }
 
 fn with_stations(session: &Session, stations: Vec<crate::session::Station>) -> Result<Session, String> {

@@ -185,6 +185,9 @@ impl PoseNotation {
         let rotation = match self.orientation {
             OrientationForm::Angles => {
                 let angles_deg = [numbers[3], numbers[4], numbers[5]].map(|angle| angle * self.angle_unit.in_degrees());
+                if angles_deg.iter().any(|angle| !angle.is_finite()) {
+                    return Err(NotAPose::NotFinite);
+                }
                 self.convention.rotation_from_angles_deg(angles_deg)
             }
             OrientationForm::QuaternionWxyz => unit_quaternion([numbers[3], numbers[4], numbers[5], numbers[6]])?,
@@ -196,6 +199,11 @@ impl PoseNotation {
             Some(flange_from_tcp) => base_from_tcp * flange_from_tcp.inverse(),
             None => Transform::from_rigid(*base_from_tcp.rigid()),
         };
+        // Huge numbers overflow in the units that are counted in, and in products.
+        let parts = base_from_flange.quaternion_wxyz();
+        if !base_from_flange.translation_mm().iter().chain(&parts).all(|value| value.is_finite()) {
+            return Err(NotAPose::NotFinite);
+        }
         Ok(Transform::from_parts(base_from_flange.translation_mm(), upper_half(base_from_flange.rotation())))
     }
 

@@ -10,7 +10,7 @@ use crate::session::import::{self, ImportError, ImportOptions, Imported, Source}
 use crate::text::edits::import_label;
 use crate::text::import as words;
 
-use super::{Progress, Workbench};
+use super::{NoticeKind, Progress, Workbench};
 
 /// An import that the user looks at before it is made.
 #[derive(Clone, Debug)]
@@ -148,8 +148,14 @@ impl Workbench {
         let (imported, name) = (Arc::clone(imported), words::sources_name(sources));
         match into {
             ImportInto::NewSession { name, target } => {
-                self.imports.end();
-                self.open_unsaved_session(Arc::unwrap_or_clone(imported).into_session(name, target));
+                // The preview stays if there can be no such session.
+                match Arc::unwrap_or_clone(imported).into_session(name, target) {
+                    Ok(session) => {
+                        self.imports.end();
+                        self.open_unsaved_session(session);
+                    }
+                    Err(refusal) => self.notify(NoticeKind::Error, refusal.to_string()),
+                }
             }
             ImportInto::OpenSession => self.add_stations(&imported, &name),
         }

@@ -1,12 +1,13 @@
 //! ABB modules, `.mod`: robtargets, with the tools and work objects of the same module.
 
 use std::borrow::Cow;
+use std::collections::HashMap;
 
 use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
-use crate::geometry::{PoseConvention, PoseNotation, Transform};
+use crate::geometry::{Base, Flange, PoseNotation, Tcp, Transform, Vec3};
 use crate::watch::Cancelled;
 
-use super::gather::{Gathered, RawPose};
+use super::gather::{Gathered, OwnFrames, RawPose};
 use super::program::{Frames, Unknown, head, show, tool_frame};
 use super::read::Progress;
 use super::scan::Scanner;
@@ -21,8 +22,106 @@ struct Module<'t> {
     tools: Vec<(&'t str, Pose)>,
     /// With the frame of the user and that of the object.
     work_objects: Vec<(&'t str, Pose, Pose)>,
+    /// Every tool that a move names, `tool0` among them.
     used_tools: Vec<&'t str>,
+    /// Every work object that a move names or leaves out, which is `wobj0`.
     used_work_objects: Vec<&'t str>,
+    /// Tool and work object of the first move to a target, by its name in small letters.
+    uses: HashMap<String, (&'t str, &'t str)>,
+}
+
+/// The flange and the base, as moves name them.
+const OWN_TOOL: &str = "tool0";
+const OWN_WORK_OBJECT: &str = "wobj0";
+
+impl<'t> Module<'t> {
+    fn tool(&self, name: &str) -> Option<Transform<Flange, Tcp>> {
+        let (_, (position, quaternion)) = self.tools.iter().find(|(known, _)| is_word(known, name))?;
+        tool_frame(*position, *quaternion)
+    }
+
+    fn work_object(&self, name: &str) -> Option<Transform<Base, Base>> {
+        let (_, user, object) = self.work_objects.iter().find(|(known, ..)| is_word(known, name))?;
+        base_from_object(user, object)
+    }
+
+    /// The one tool of all moves that are not the flange's own; without moves the only one that there is.
+    fn common_tool(&self) -> Option<&'t str> {
+        match (self.used_tools.is_empty(), self.tools.as_slice()) {
+            (true, [(name, _)]) => Some(name),
+            _ => only(&self.used_tools, OWN_TOOL),
+        }
+    }
+
+    fn common_work_object(&self) -> Option<&'t str> {
+        match (self.used_work_objects.is_empty(), self.work_objects.as_slice()) {
+            (true, [(name, ..)]) => Some(name),
+            _ => only(&self.used_work_objects, OWN_WORK_OBJECT),
+        }
+    }
+
+    /// Tool and work object of a target; `None` where moves differ and none goes to this one.
+    fn use_of(&self, label: Option<&str>) -> (Option<&'t str>, Option<&'t str>) {
+        if let Some((tool, object)) = label.and_then(|label| self.uses.get(&label.to_ascii_lowercase())) {
+            return (Some(tool), Some(object));
+        }
+        let of_all = |used: &[&'t str], common: Option<&'t str>, own: &'static str| match used {
+            [] => Some(common.unwrap_or(own)),
+            [one] => Some(*one),
+            _ => None,
+        };
+        (
+            of_all(&self.used_tools, self.common_tool(), OWN_TOOL),
+            of_all(&self.used_work_objects, self.common_work_object(), OWN_WORK_OBJECT),
+        )
+    }
+
+    /// What a target's own frames are, beside the common ones; those that are not known are noted.
+    fn own_frames(&self, tool: Option<&str>, object: Option<&str>, unknown: &mut Unknown) -> OwnFrames {
+        const NO_MOVE: &str = "that no move names";
+        let mut frames = OwnFrames::default();
+        let is_same = |name: &str, common: Option<&str>| common.is_some_and(|common| is_word(common, name));
+        match tool {
+            Some(name) if is_word(name, OWN_TOOL) => frames.is_of_flange = true,
+            Some(name) => {
+                let is_defined = self.tools.iter().any(|(known, _)| is_word(known, name));
+                if !is_defined {
+                    unknown.tool(name);
+                } else if !is_same(name, self.common_tool()) {
+                    frames.flange_from_tcp = self.tool(name);
+                    frames.is_of_flange = frames.flange_from_tcp.is_none();
+                }
+            }
+            None => {
+                frames.is_of_flange = true;
+                unknown.tool_in_any_case(NO_MOVE);
+            }
+        }
+        match object {
+            Some(name) if is_word(name, OWN_WORK_OBJECT) => frames.is_in_base = true,
+            Some(name) => {
+                let is_defined = self.work_objects.iter().any(|(known, ..)| is_word(known, name));
+                if !is_defined {
+                    unknown.frame(name);
+                } else if !is_same(name, self.common_work_object()) {
+                    frames.base_from_user = self.work_object(name);
+                    frames.is_in_base = frames.base_from_user.is_none();
+                }
+            }
+            None => {
+                frames.is_in_base = true;
+                unknown.frame_in_any_case(NO_MOVE);
+            }
+        }
+        frames
+    }
+}
+
+/// The only name beside that of the robot's own frame.
+fn only<'t>(used: &[&'t str], own: &str) -> Option<&'t str> {
+    let mut others = used.iter().filter(|name| !is_word(name, own));
+    let first = others.next()?;
+    others.next().is_none().then_some(*first)
 }
 
 /// Whether a text is such a module.
@@ -38,36 +137,24 @@ fn is_word(word: &str, wanted: &str) -> bool {
     word.eq_ignore_ascii_case(wanted)
 }
 
-/// The tool and work object that a module defines, where all its moves use one and the same.
+/// The tool and work object that a module defines, where all its moves that use any use one and the same.
 pub(super) fn frames(text: &str) -> Frames {
     let module = survey(text);
-    let tool = match module.used_tools.as_slice() {
-        [] if module.tools.len() == 1 => module.tools.first(),
-        [name] => module.tools.iter().find(|(known, _)| is_word(known, name)),
-        _ => None,
-    };
-    let work_object = match module.used_work_objects.as_slice() {
-        [] if module.work_objects.len() == 1 && module.used_tools.is_empty() => module.work_objects.first(),
-        [name] => module.work_objects.iter().find(|(known, ..)| is_word(known, name)),
-        _ => None,
-    };
     Frames {
-        flange_from_tcp: tool.and_then(|(_, (position, quaternion))| tool_frame(*position, *quaternion)),
-        base_from_user_frame: work_object.and_then(|(_, user, object)| base_from_object(user, object)),
+        flange_from_tcp: module.common_tool().and_then(|name| module.tool(name)),
+        base_from_user: module.common_work_object().and_then(|name| module.work_object(name)),
     }
 }
 
-/// The object's frame in the base, as three coordinates and ABB's three angles.
-fn base_from_object(user: &Pose, object: &Pose) -> Option<[f64; 6]> {
+/// The object's frame in the base; `None` if it is the base.
+fn base_from_object(user: &Pose, object: &Pose) -> Option<Transform<Base, Base>> {
     let quaternion = PoseNotation { orientation: OrientationForm::QuaternionWxyz, ..PoseNotation::default() };
     let pose = |(position, rotation): &Pose| {
         quaternion.base_from_flange(&[position.as_slice(), rotation.as_slice()].concat()).ok()
     };
-    let rigid = pose(user)?.rigid() * pose(object)?.rigid();
-    let angles = PoseNotation::of(PoseConvention::by_id("abb-ezeyex")?);
-    let numbers = angles.numbers(&Transform::from_rigid(rigid));
-    let numbers: [f64; 6] = numbers.try_into().ok()?;
-    numbers.iter().any(|number| *number != 0.0).then_some(numbers)
+    let frame: Transform<Base, Base> = Transform::from_rigid(pose(user)?.rigid() * pose(object)?.rigid());
+    let is_base = frame.translation_mm() == Vec3::zeros() && frame.rotation().angle() == 0.0;
+    (!is_base).then_some(frame)
 }
 
 pub(super) fn notation(frames: &Frames, fallback: &PoseNotation) -> PoseNotation {
@@ -91,31 +178,106 @@ fn survey(text: &str) -> Module<'_> {
                 module.work_objects.push((name, user, object));
             }
         } else if is_move(word) {
-            let rest = scanner.rest();
-            let end = rest.find([';', '\n']).unwrap_or(rest.len());
-            let arguments = &rest[..end];
-            // The tool is the last argument, the work object a switch behind it.
-            let last = arguments.rsplit(',').next().unwrap_or_default();
-            let (tool, switches) = last.split_once('\\').unwrap_or((last, ""));
-            let tool = tool.trim();
-            add_once(&mut module.used_tools, tool, "tool0");
-            let object = switches.split_once(":=").map_or("wobj0", |(_, name)| name.trim());
-            add_once(&mut module.used_work_objects, object, "wobj0");
-            scanner.jump(scanner.at() + end);
+            let arguments = Arguments::of(&mut scanner);
+            let Some((tool, object)) = arguments.frames() else { continue };
+            add_once(&mut module.used_tools, tool);
+            add_once(&mut module.used_work_objects, object);
+            for (_, target) in arguments.targets(word) {
+                if target.starts_with(|c: char| c.is_ascii_alphabetic()) {
+                    let name: String = target.chars().filter(|c| !c.is_whitespace()).collect();
+                    module.uses.entry(name.to_ascii_lowercase()).or_insert((tool, object));
+                }
+            }
         }
     }
     module
 }
 
-fn add_once<'t>(names: &mut Vec<&'t str>, name: &'t str, own: &str) {
-    let is_name = name.starts_with(|c: char| c.is_ascii_alphabetic()) && !is_word(name, own);
-    if is_name && !names.iter().any(|known| is_word(known, name)) {
+/// The arguments of a move: the first few, which may be targets, and the last, which has the tool.
+#[derive(Default)]
+struct Arguments<'t> {
+    /// Byte and text.
+    first: Vec<(usize, &'t str)>,
+    last: &'t str,
+}
+
+impl<'t> Arguments<'t> {
+    /// A move ends at its semicolon, over however many lines it runs; the scanner stands behind it then.
+    fn of(scanner: &mut Scanner<'t>) -> Self {
+        /// Two targets and what stands behind them.
+        const MAX_FIRST: usize = 3;
+        let (text, offset) = (scanner.rest(), scanner.at());
+        let mut arguments = Self::default();
+        let (mut start, mut depth, mut end, mut is_comment) = (0, 0_usize, text.len(), false);
+        let mut take = |from: usize, to: usize| {
+            let argument = text[from..to].trim();
+            let at = offset + from + (text[from..to].len() - text[from..to].trim_start().len());
+            // A switch such as \Conc stands in front with a comma of its own.
+            if !argument.starts_with('\\') && arguments.first.len() < MAX_FIRST {
+                arguments.first.push((at, argument));
+            }
+            arguments.last = argument;
+        };
+        for (at, c) in text.char_indices() {
+            match c {
+                '\n' | '\r' => is_comment = false,
+                _ if is_comment => {}
+                '!' => is_comment = true,
+                '[' | '(' => depth += 1,
+                ']' | ')' => depth = depth.saturating_sub(1),
+                ';' => {
+                    end = at;
+                    break;
+                }
+                ',' if depth == 0 => {
+                    take(start, at);
+                    start = at + 1;
+                }
+                _ => {}
+            }
+        }
+        take(start, end);
+        scanner.jump(offset + end);
+        arguments
+    }
+
+    /// The targets of a move: one, two of a circle.
+    fn targets(&self, word: &str) -> &[(usize, &'t str)] {
+        let num_targets =
+            if word.as_bytes().get(4).is_some_and(|byte| byte.eq_ignore_ascii_case(&b'c')) { 2 } else { 1 };
+        &self.first[..num_targets.min(self.first.len())]
+    }
+
+    /// Tool and work object.
+    fn frames(&self) -> Option<(&'t str, &'t str)> {
+        let mut scanner = Scanner::new(self.last, "!");
+        let tool = scanner.word();
+        if !tool.starts_with(|c: char| c.is_ascii_alphabetic()) {
+            return None;
+        }
+        while scanner.eat('\\') {
+            let switch = scanner.word();
+            let value = if assigned(&mut scanner) { scanner.word() } else { "" };
+            if is_word(switch, "wobj") && !value.is_empty() {
+                return Some((tool, value));
+            }
+        }
+        Some((tool, OWN_WORK_OBJECT))
+    }
+}
+
+fn add_once<'t>(names: &mut Vec<&'t str>, name: &'t str) {
+    if !names.iter().any(|known| is_word(known, name)) {
         names.push(name);
     }
 }
 
+/// `MoveL`, `MoveJ` and `MoveC`, and those that set a signal or call a routine on the way.
 fn is_move(word: &str) -> bool {
-    word.len() > 4 && word.as_bytes()[..4].eq_ignore_ascii_case(b"move") && !is_word(word, "moveabsj")
+    const KINDS: [&str; 3] = ["movel", "movej", "movec"];
+    const SUFFIXES: [&str; 5] = ["", "do", "ao", "go", "sync"];
+    let lower = word.to_ascii_lowercase();
+    KINDS.iter().any(|kind| lower.strip_prefix(kind).is_some_and(|suffix| SUFFIXES.contains(&suffix)))
 }
 
 fn assigned(scanner: &mut Scanner<'_>) -> bool {
@@ -162,12 +324,12 @@ pub(super) fn read(
     progress: &mut Progress<'_>,
 ) -> Result<(), Cancelled> {
     head(preview, gathered.notation());
-    let num_before = gathered.num_poses();
-    let mut unknown = Unknown::default();
+    let module = survey(text);
+    let mut taking = Taking { module: &module, unknown: Unknown::default(), gathered, preview };
     let mut scanner = Scanner::new(text, "!");
     while let Some(word) = scanner.next_word() {
         if is_word(word, "jointtarget") {
-            unknown.joint_pose();
+            taking.unknown.joint_pose();
             continue;
         }
         let is_declared = is_word(word, "robtarget");
@@ -176,27 +338,34 @@ pub(super) fn read(
         }
         progress.tick()?;
         if is_declared {
-            declaration(source, &mut scanner, gathered, preview);
-        } else {
-            // Switches like \Conc and a comma may stand before the target.
-            scanner.skip_blanks();
-            if scanner.peek() == Some('[') {
-                target(source, &mut scanner, None, gathered, preview);
-            }
+            declaration(source, &mut scanner, &mut taking);
+            continue;
         }
+        let arguments = Arguments::of(&mut scanner);
+        let end = scanner.at();
+        let (tool, object) = arguments.frames().unwrap_or((OWN_TOOL, OWN_WORK_OBJECT));
+        for (byte, _) in arguments.targets(word).iter().filter(|(_, target)| target.starts_with('[')) {
+            let frames = module.own_frames(Some(tool), Some(object), &mut taking.unknown);
+            scanner.jump(*byte);
+            target(source, &mut scanner, None, Some(frames), &mut taking);
+        }
+        scanner.jump(end);
     }
-    let num_poses = gathered.num_poses() - num_before;
-    let module = survey(text);
-    for _ in 0..num_poses {
-        module.used_tools.iter().for_each(|name| unknown.tool(name));
-        module.used_work_objects.iter().for_each(|name| unknown.frame(name));
-    }
+    let Taking { unknown, gathered, .. } = taking;
     unknown.note(gathered);
     Ok(())
 }
 
+/// Where targets go.
+struct Taking<'a, 't> {
+    module: &'a Module<'t>,
+    unknown: Unknown,
+    gathered: &'a mut Gathered,
+    preview: &'a mut Preview,
+}
+
 /// `robtarget p10:=[…];` or `robtarget a{2}:=[[…],[…]];`
-fn declaration(source: &Source, scanner: &mut Scanner<'_>, gathered: &mut Gathered, preview: &mut Preview) {
+fn declaration(source: &Source, scanner: &mut Scanner<'_>, taking: &mut Taking<'_, '_>) {
     let name = scanner.word();
     let mut is_array = false;
     if scanner.eat('{') {
@@ -211,24 +380,24 @@ fn declaration(source: &Source, scanner: &mut Scanner<'_>, gathered: &mut Gather
         return;
     }
     if !is_array {
-        target(source, scanner, Some(name), gathered, preview);
+        target(source, scanner, Some(name), None, taking);
     } else if scanner.eat('[') {
         for number in 1_usize.. {
             let label = format!("{name}{{{number}}}");
-            if !target(source, scanner, Some(&label), gathered, preview) || !scanner.eat(',') {
+            if !target(source, scanner, Some(&label), None, taking) || !scanner.eat(',') {
                 break;
             }
         }
     }
 }
 
-/// Takes the value of a robtarget; whether there is one.
+/// Takes the value of a robtarget, in the frames of its move if it stands in one; whether there is one.
 fn target(
     source: &Source,
     scanner: &mut Scanner<'_>,
     label: Option<&str>,
-    gathered: &mut Gathered,
-    preview: &mut Preview,
+    frames: Option<OwnFrames>,
+    taking: &mut Taking<'_, '_>,
 ) -> bool {
     scanner.skip_blanks();
     let start = scanner.at();
@@ -239,7 +408,7 @@ fn target(
     });
     let Some((position, quaternion)) = parsed.flatten() else {
         let place = scanner.place(scanner.at());
-        gathered.problem(&source.name, place, scanner.found(), "a robtarget [[x,y,z],[q1,q2,q3,q4],[…],[…]]");
+        taking.gathered.problem(&source.name, place, scanner.found(), "a robtarget [[x,y,z],[q1,q2,q3,q4],[…],[…]]");
         return false;
     };
     // The configuration and the external axes say nothing of the flange.
@@ -254,8 +423,12 @@ fn target(
     }
     let at = scanner.place(start);
     let numbers = [position.as_slice(), quaternion.as_slice()].concat();
-    show(preview, at.0, label.unwrap_or_default(), &numbers);
-    gathered
-        .take(&source.name, &RawPose { at, label: label.map(Cow::Borrowed), numbers: &numbers, ..RawPose::default() });
+    show(taking.preview, at.0, label.unwrap_or_default(), &numbers);
+    let frames = frames.unwrap_or_else(|| {
+        let (tool, object) = taking.module.use_of(label);
+        taking.module.own_frames(tool, object, &mut taking.unknown)
+    });
+    let label = label.map(Cow::Borrowed);
+    taking.gathered.take(&source.name, &RawPose { at, label, numbers: &numbers, frames, ..RawPose::default() });
     true
 }

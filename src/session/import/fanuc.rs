@@ -75,7 +75,11 @@ pub(super) fn read(
             continue;
         }
         let numbers = position.coordinates.map(Option::unwrap_or_default);
-        let frames = OwnFrames { is_in_base: position.user_frame == "0", is_of_flange: position.tool == "0" };
+        let frames = OwnFrames {
+            is_in_base: position.user_frame == "0",
+            is_of_flange: position.tool == "0",
+            ..OwnFrames::default()
+        };
         if !frames.is_in_base {
             unknown.frame(&format!("UFRAME {}", position.user_frame));
         }

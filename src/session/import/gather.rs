@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use crate::calibrate::SideChoice;
 use crate::geometry::notation::NotAPose;
-use crate::geometry::{Base, PoseNotation, Profile, Transform, Vec3};
+use crate::geometry::{Base, Flange, PoseNotation, Profile, Tcp, Transform, Vec3};
 use crate::session::edit::written_angles;
 use crate::session::limits::{self, Quantity};
 use crate::session::{Capture, Reading, Station};
@@ -53,6 +53,10 @@ pub(super) struct OwnFrames {
     pub is_in_base: bool,
     /// It is the flange's, whatever the tool of the others.
     pub is_of_flange: bool,
+    /// Its own user frame, in place of that of the others.
+    pub base_from_user: Option<Transform<Base, Base>>,
+    /// Its own tool, likewise.
+    pub flange_from_tcp: Option<Transform<Flange, Tcp>>,
 }
 
 /// What belongs to a capture until its profile is found.
@@ -70,6 +74,8 @@ pub(super) struct Gathered {
     pub stations: Vec<Station>,
     /// The profiles that a table names.
     pub profile_keys: Vec<ProfileKey>,
+    /// Index of the first station of each source, and the source's folder.
+    pub source_starts: Vec<(usize, String)>,
     pub problems: Vec<Problem>,
     pub num_problems: usize,
     pub notes: Vec<Note>,
@@ -79,23 +85,27 @@ pub(super) struct Gathered {
     /// How often a label was wanted, by its hash: for a session of many poses the labels would be there twice. Two labels
     /// of one hash would only cost one of them a number.
     labels: HashMap<u64, u32>,
+    /// The label that the last pose wanted, if it had one and its source goes on.
+    last_wanted: Option<String>,
     num_poses: usize,
     num_normalised: usize,
     num_points: usize,
 }
 
 impl Gathered {
-    pub fn new(notation: PoseNotation, base_from_user_frame: Option<[f64; 6]>) -> Self {
+    pub fn new(notation: PoseNotation) -> Self {
         Self {
             stations: Vec::new(),
             profile_keys: Vec::new(),
+            source_starts: Vec::new(),
             problems: Vec::new(),
             num_problems: 0,
             notes: Vec::new(),
             notation,
-            base_from_user: base_from_user_frame.and_then(|numbers| user_frame(&numbers, &notation)),
+            base_from_user: None,
             no_profile: Arc::new(Profile::default()),
             labels: HashMap::new(),
+            last_wanted: None,
             num_poses: 0,
             num_normalised: 0,
             num_points: 0,
@@ -103,13 +113,33 @@ impl Gathered {
     }
 
     /// How the next source writes its poses.
-    pub fn set_notation(&mut self, notation: PoseNotation, base_from_user_frame: Option<[f64; 6]>) {
+    ///
+    /// The user frame is what the options say, numbers in that notation, else what the source itself says.
+    pub fn set_notation(
+        &mut self,
+        notation: PoseNotation,
+        said_frame: Option<[f64; 6]>,
+        own_frame: Option<Transform<Base, Base>>,
+    ) {
         self.notation = notation;
-        self.base_from_user = base_from_user_frame.and_then(|numbers| user_frame(&numbers, &notation));
+        self.base_from_user = said_frame.and_then(|numbers| user_frame(&numbers, &notation)).or(own_frame);
+    }
+
+    /// The sweeps of the sources before do not go on in the next.
+    pub fn begin_source(&mut self, name: &str) {
+        let folder = name.rsplit_once(['/', '\\']).map_or("", |(folder, _)| folder);
+        self.source_starts.push((self.stations.len(), folder.to_owned()));
+        self.last_wanted = None;
     }
 
     pub const fn notation(&self) -> &PoseNotation {
         &self.notation
+    }
+
+    /// The user frame as numbers in the notation, as the options have it.
+    pub fn user_frame_numbers(&self) -> Option<[f64; 6]> {
+        let frame = self.base_from_user.as_ref()?;
+        plain_angles(&self.notation).numbers(&Transform::from_rigid(*frame.rigid())).try_into().ok()
     }
 
     pub const fn has_user_frame(&self) -> bool {
@@ -154,9 +184,10 @@ impl Gathered {
     }
 
     fn capture(&mut self, raw: &RawPose<'_>) -> Result<Capture, (String, String)> {
-        let own_tool = self.notation.flange_from_tcp.filter(|_| !raw.frames.is_of_flange);
+        let own_tool =
+            raw.frames.flange_from_tcp.or(self.notation.flange_from_tcp).filter(|_| !raw.frames.is_of_flange);
         let notation = PoseNotation { flange_from_tcp: own_tool, ..self.notation };
-        let base_from_user = self.base_from_user.filter(|_| !raw.frames.is_in_base);
+        let base_from_user = raw.frames.base_from_user.or(self.base_from_user).filter(|_| !raw.frames.is_in_base);
         let user_from_flange = notation.base_from_flange(raw.numbers).map_err(|problem| not_a_pose(&problem))?;
         let base_from_flange = match &base_from_user {
             Some(base_from_user) => *base_from_user * user_from_flange,
@@ -197,10 +228,8 @@ impl Gathered {
         self.num_poses += 1;
         self.num_points += usize::from(raw.point_in_sensor.is_some());
         let wanted = raw.label.as_deref().map(usable_label).filter(|label| !label.is_empty());
-        let continues = match (&wanted, self.stations.last()) {
-            (Some(wanted), Some(last)) => raw.may_continue && *wanted == last.label,
-            _ => false,
-        };
+        let continues = raw.may_continue && wanted.is_some() && wanted == self.last_wanted;
+        self.last_wanted.clone_from(&wanted);
         if continues {
             if let Some(last) = self.stations.last_mut() {
                 last.captures.push(capture);
@@ -266,13 +295,13 @@ fn hash(label: &str) -> u64 {
 }
 
 fn user_frame(numbers: &[f64; 6], notation: &PoseNotation) -> Option<Transform<Base, Base>> {
-    let angles = PoseNotation {
-        orientation: crate::geometry::notation::OrientationForm::Angles,
-        flange_from_tcp: None,
-        is_inverse: false,
-        ..*notation
-    };
-    angles.base_from_flange(numbers).ok().map(|pose| Transform::from_rigid(*pose.rigid()))
+    plain_angles(notation).base_from_flange(numbers).ok().map(|pose| Transform::from_rigid(*pose.rigid()))
+}
+
+/// The notation of a frame beside poses: six numbers in their units.
+const fn plain_angles(notation: &PoseNotation) -> PoseNotation {
+    let orientation = crate::geometry::notation::OrientationForm::Angles;
+    PoseNotation { orientation, flange_from_tcp: None, is_inverse: false, ..*notation }
 }
 
 fn not_a_pose(problem: &NotAPose) -> (String, String) {

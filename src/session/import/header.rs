@@ -10,6 +10,8 @@ use super::text::half_width;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Said {
     pub length_unit: Option<LengthUnit>,
+    /// Of the reduced points; millimetres if nothing is said.
+    pub point_unit: Option<LengthUnit>,
     pub angle_unit: Option<AngleUnit>,
     pub orientation: Option<OrientationForm>,
     pub convention: Option<&'static PoseConvention>,
@@ -94,6 +96,26 @@ fn angle_unit(unit: &str) -> Option<AngleUnit> {
         "deg" | "degree" | "degrees" | "°" | "grad" => Some(AngleUnit::Degrees),
         "rad" | "radian" | "radians" => Some(AngleUnit::Radians),
         _ => None,
+    }
+}
+
+/// Millimetres in the unit that a profile's column has behind its name; `None` without a unit.
+///
+/// # Errors
+/// The unit, if it is none of length.
+pub(super) fn column_in_mm(cell: &str) -> Result<Option<f64>, String> {
+    let lower = cell.trim().to_lowercase();
+    let suffix = lower.rsplit_once(['_', '/', ' ']).map(|(_, after)| after.to_owned());
+    let is_length = |unit: &String| matches!(unit.as_str(), "um" | "µm" | "μm" | "cm" | "in" | "inch");
+    let unit = name_and_unit(cell).1.or_else(|| suffix.filter(is_length));
+    match unit.as_deref() {
+        None | Some("") => Ok(None),
+        Some("mm" | "millimeter" | "millimetre") => Ok(Some(1.0)),
+        Some("m" | "meter" | "metre") => Ok(Some(1000.0)),
+        Some("cm") => Ok(Some(10.0)),
+        Some("um" | "µm" | "μm" | "micron") => Ok(Some(0.001)),
+        Some("in" | "inch" | "\"") => Ok(Some(25.4)),
+        Some(other) => Err(other.to_owned()),
     }
 }
 
@@ -213,9 +235,7 @@ pub(super) fn roles(cells: &[&str], convention: &'static PoseConvention) -> (Vec
             }
         }
     }
-    if take(&mut roles, &point).is_none() {
-        take(&mut roles, &[point[0], point[2]]);
-    }
+    let points = take(&mut roles, &point).or_else(|| take(&mut roles, &[point[0], point[2]]));
     for (column, (words, _)) in named.iter().enumerate() {
         if roles[column].is_none()
             && let Some(Word::Other(role)) = words.iter().find(|word| matches!(word, Word::Other(_)))
@@ -228,6 +248,7 @@ pub(super) fn roles(cells: &[&str], convention: &'static PoseConvention) -> (Vec
         columns.as_ref().and_then(|columns| columns.iter().find_map(|column| named[*column].1.as_deref()))
     };
     said.length_unit = unit_of(&positions).and_then(length_unit);
+    said.point_unit = unit_of(&points).and_then(length_unit);
     said.angle_unit = unit_of(&angles).and_then(angle_unit);
     (roles, said)
 }
@@ -238,6 +259,7 @@ pub(super) fn units(cells: &[&str], roles: &[Option<Role>], said: &mut Said) {
         let unit = cell.trim().trim_matches(['[', ']', '(', ')']).to_lowercase();
         match role {
             Some(Role::Position(_)) => said.length_unit = said.length_unit.or_else(|| length_unit(&unit)),
+            Some(Role::Point(_)) => said.point_unit = said.point_unit.or_else(|| length_unit(&unit)),
             Some(Role::Orientation(_)) => said.angle_unit = said.angle_unit.or_else(|| angle_unit(&unit)),
             _ => {}
         }

@@ -22,7 +22,7 @@ pub(super) fn is_program(text: &str) -> bool {
             let mut scanner = Scanner::new(text, ";");
             scanner.jump(at + 1);
             let word = scanner.word();
-            matches!(word, "X" | "A1") && scanner.number().is_some()
+            matches!(word, "X" | "x" | "A1" | "a1") && scanner.number().is_some()
         })
     };
     ["E6POS", "E6AXIS", "&ACCESS", "DEFDAT"].iter().any(|word| text.contains(word)) || has_position()
@@ -98,12 +98,13 @@ fn group(scanner: &mut Scanner<'_>) -> Group {
                 scanner.skip_blanks();
                 let at = scanner.at();
                 let value = scanner.number();
-                match key {
+                // KRL does not tell small letters from capitals.
+                match key.to_ascii_uppercase().as_str() {
                     "TOOL_NO" => group.tool = value,
                     "BASE_NO" => group.base = value,
                     "A1" => group.has_joints = true,
                     _ => {
-                        if let Some(idx) = COORDINATES.iter().position(|name| *name == key) {
+                        if let Some(idx) = COORDINATES.iter().position(|name| key.eq_ignore_ascii_case(name)) {
                             group.coordinates[idx] = value;
                             if value.is_none() {
                                 group.bad.get_or_insert(at);
@@ -180,7 +181,11 @@ pub(super) fn read(
                 at,
                 label: label.map(Cow::Borrowed),
                 numbers: &numbers,
-                frames: OwnFrames { is_in_base: base == Some(0.0), is_of_flange: tool == Some(0.0) },
+                frames: OwnFrames {
+                    is_in_base: base == Some(0.0),
+                    is_of_flange: tool == Some(0.0),
+                    ..OwnFrames::default()
+                },
                 ..RawPose::default()
             },
         );

@@ -26,7 +26,7 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use crate::geometry::PoseNotation;
-use crate::session::{Published, Session, Station, Target};
+use crate::session::{Edit, EditRefusal, Published, Session, Station, Target};
 use crate::watch::{Cancelled, Watch};
 
 pub use folder::{MAX_FILE_BYTES, MAX_FILES, MAX_TOTAL_BYTES};
@@ -134,7 +134,7 @@ pub struct ImportOptions {
 }
 
 /// One source and what it gave.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Part {
     /// The source's name.
     pub name: String,
@@ -144,6 +144,8 @@ pub struct Part {
     pub num_poses: usize,
     /// Profiles or points read from it.
     pub num_readings: usize,
+    /// How its poses were read; `None` if it has none, or says so itself for each.
+    pub notation: Option<PoseNotation>,
 }
 
 /// The first rows of the table, as they were read.
@@ -292,6 +294,24 @@ pub enum ImportError {
     /// A session file that cannot be opened.
     #[error(transparent)]
     Session(#[from] crate::session::SessionError),
+    /// The stations of a session do not go with those of another.
+    #[error("{file}: {problem}")]
+    NotAdded {
+        /// The session file.
+        file: String,
+        /// Why.
+        problem: String,
+    },
+    /// One notation was asked for, and the sources are written in several.
+    #[error(
+        "{first} and {other}: found poses written in two ways, expected one for which to say how they are read; import them one after the other"
+    )]
+    SeveralNotations {
+        /// A source.
+        first: String,
+        /// Another.
+        other: String,
+    },
     /// The user thought better of it.
     #[error("the import was cancelled")]
     Cancelled,
@@ -331,27 +351,38 @@ pub fn read(
 }
 
 impl Imported {
-    /// A new session with what was read, in the notation that it was read in.
-    #[must_use]
-    pub fn into_session(self, name: String, target: Target) -> Session {
+    /// A new session with what was read, in the notation that it was read in; a session among the sources keeps its name
+    /// and target and gets the stations of the others.
+    ///
+    /// # Errors
+    /// [`EditRefusal`] if the stations cannot be in such a session.
+    pub fn into_session(mut self, name: String, target: Target) -> Result<Session, EditRefusal> {
         if let Some(session) = self.session {
-            return *session;
+            let stations = self.stations.split_off(session.stations.len().min(self.stations.len()));
+            return if stations.is_empty() { Ok(*session) } else { with_stations(&session, stations) };
         }
         let robot = crate::session::Robot {
             notation: self.options.notation.unwrap_or_default(),
             ..crate::session::Robot::default()
         };
-        Session {
+        let empty = Session {
             name,
             notes: String::new(),
             robot,
             sensor: crate::session::Sensor::default(),
             target,
             mount: crate::calibrate::Mount::default(),
-            stations: self.stations,
-            published: self.published,
+            stations: Vec::new(),
+            published: None,
             truth: None,
             unknown: serde_json::Map::new(),
-        }
+        };
+        // Stations of a plate need an edge each; adding them sees to it.
+        Ok(Session { published: self.published, ..with_stations(&empty, self.stations)? })
     }
+}
+
+/// The session with stations behind its own.
+fn with_stations(session: &Session, stations: Vec<Station>) -> Result<Session, EditRefusal> {
+    Edit::InsertStations { at: usize::MAX, stations }.apply(session)
 }

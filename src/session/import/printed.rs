@@ -162,8 +162,10 @@ fn is_caption(line: &str) -> bool {
 
 /// The number of a row in its first cell.
 fn leading_number(line: &str) -> Option<u32> {
+    /// The largest numbers that are read have ten digits.
+    const MAX_DIGITS: usize = 10;
     let line = line.trim_start_matches(['|', ' ', '\t']);
-    let end = line.find(|c: char| !c.is_ascii_digit()).unwrap_or(line.len());
+    let end = line.bytes().take(MAX_DIGITS).take_while(u8::is_ascii_digit).count();
     let rest = line[end..].trim_start_matches(['.', ')', '、']);
     rest.starts_with(['|', ' ', '\t', ',', ':', ';']).then(|| line[..end].parse().ok()).flatten()
 }

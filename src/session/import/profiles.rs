@@ -5,6 +5,7 @@ use crate::geometry::notation::LengthUnit;
 use crate::watch::Cancelled;
 
 use super::gather::Gathered;
+use super::header::column_in_mm;
 use super::read::Progress;
 use super::table::{Layout, is_comment};
 use super::text::{is_missing, number, records, split};
@@ -65,18 +66,35 @@ fn is_invalid_code(text: &str, value: f64) -> bool {
     is_all_nines || [-32_768.0, -32_767.0, -2_147_483_648.0].contains(&value)
 }
 
-/// Length unit of profiles: as the options say, else as the header does, else millimetres.
-pub(super) fn length_unit(layout: &Layout, options: &ImportOptions) -> LengthUnit {
-    let is_in_metres = || {
-        let header = layout.header.as_ref()?;
-        let last = header.last()?.to_lowercase();
-        Some(["[m]", "(m)", "/m", "_m"].iter().any(|unit| last.trim_end().ends_with(unit)))
+/// Millimetres in the units of x and z: as the options say, else as the header does, else one.
+///
+/// # Errors
+/// A unit that is not known.
+fn units_in_mm(layout: &Layout, x: usize, z: usize, options: &ImportOptions) -> Result<[f64; 2], String> {
+    if let Some(unit) = options.profile_length_unit {
+        return Ok([unit.in_mm(); 2]);
+    }
+    let of = |column: usize| match layout.header.as_ref().and_then(|header| header.get(column)) {
+        Some(cell) => column_in_mm(cell),
+        None => Ok(None),
     };
-    options.profile_length_unit.unwrap_or(if is_in_metres() == Some(true) {
-        LengthUnit::Metres
-    } else {
-        LengthUnit::Millimetres
-    })
+    let (x, z) = (of(x)?, of(z)?);
+    // One that says nothing is in the unit of the other.
+    Ok([x.or(z).unwrap_or(1.0), z.or(x).unwrap_or(1.0)])
+}
+
+/// Where x and the first z stand.
+fn first_columns(layout: &Layout, has_profile_columns: bool) -> (usize, usize) {
+    if has_profile_columns { (0, layout.num_columns.saturating_sub(1)) } else { x_and_z(layout) }
+}
+
+/// The length unit of profiles, for the options: `None` where the header says another than these.
+pub(super) fn length_unit(layout: &Layout, has_profile_columns: bool, options: &ImportOptions) -> Option<LengthUnit> {
+    let (x, z) = first_columns(layout, has_profile_columns);
+    let units = units_in_mm(layout, x, z, options).ok()?;
+    [LengthUnit::Millimetres, LengthUnit::Metres]
+        .into_iter()
+        .find(|unit| units.iter().all(|in_mm| (in_mm - unit.in_mm()).abs() < f64::EPSILON))
 }
 
 /// Reads one profile, or one a column; rows that cannot be read are listed.
@@ -92,15 +110,22 @@ pub(super) fn read(
     gathered: &mut Gathered,
     progress: &mut Progress<'_>,
 ) -> Result<Vec<NamedProfile>, Cancelled> {
-    let in_mm = length_unit(layout, options).in_mm();
+    let (x, z) = first_columns(layout, has_profile_columns);
+    let [x_in_mm, z_in_mm] = match units_in_mm(layout, x, z, options) {
+        Ok(units) => units,
+        Err(unit) => {
+            gathered.problem(&source.name, (1, 1), &unit, "mm, m, cm, um or in as the unit of x and z");
+            return Ok(Vec::new());
+        }
+    };
     let z_sign = if options.is_z_mirrored { -1.0 } else { 1.0 };
     let (x_column, z_columns) = if has_profile_columns {
         (0, (1..layout.num_columns.min(MAX_PROFILE_COLUMNS)).collect())
     } else {
-        let (x, z) = x_and_z(layout);
         (x, vec![z])
     };
-    let num_rows = records(text).count();
+    // Room for no more rows than the text could fill, were it all cells.
+    let num_rows = records(text).count().min(text.len() / z_columns.len().max(1));
     let mut x_mm: Vec<f64> = Vec::with_capacity(num_rows);
     let mut z_mm: Vec<Vec<f64>> = z_columns.iter().map(|_| Vec::with_capacity(num_rows)).collect();
     let mut cells = Vec::new();
@@ -118,17 +143,26 @@ pub(super) fn read(
             let place = cells.get(column).map(|cell| (cell.column(record.text), cell.text));
             problem.get_or_insert(place.unwrap_or((record.text.chars().count() + 1, "")));
         };
-        let within = |value: f64| (value.abs() * in_mm <= Profile::LIMIT_MM).then_some(value * in_mm);
-        let x = cells.get(x_column).and_then(|cell| number(cell.text, layout.has_decimal_comma)).and_then(within);
+        if cells.iter().all(|cell| cell.text.is_empty()) {
+            continue;
+        }
+        let within = |value: f64, in_mm: f64| (value.abs() * in_mm <= Profile::LIMIT_MM).then_some(value * in_mm);
+        let x = cells
+            .get(x_column)
+            .and_then(|cell| number(cell.text, layout.has_decimal_comma))
+            .and_then(|x| within(x, x_in_mm));
         if x.is_none() {
             fail(x_column);
         }
+        // A row that ends early has no more valid points; one of less than half its cells is another kind of row.
+        if 2 * cells.len() < layout.num_columns {
+            fail(cells.len());
+        }
         row.clear();
         for column in &z_columns {
-            // A row that ends early has no more valid points.
             let text = cells.get(*column).map_or("", |cell| cell.text);
             match z_of(text, layout.has_decimal_comma) {
-                Ok(z) => row.push(z.and_then(within).map_or(f64::NAN, |z| z * z_sign)),
+                Ok(z) => row.push(z.and_then(|z| within(z, z_in_mm)).map_or(f64::NAN, |z| z * z_sign)),
                 Err(()) => fail(*column),
             }
         }

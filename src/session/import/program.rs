@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
-use crate::geometry::{Flange, PoseConvention, PoseNotation, Tcp, Transform, Vec3};
+use crate::geometry::{Base, Flange, PoseConvention, PoseNotation, Tcp, Transform, Vec3};
 
 use super::gather::Gathered;
 use super::{Note, Preview, Role};
@@ -16,8 +16,8 @@ const MAX_PREVIEW_ROWS: usize = 50;
 pub(super) struct Frames {
     /// The one tool that all poses are for, where the program says what it is.
     pub flange_from_tcp: Option<Transform<Flange, Tcp>>,
-    /// The one frame that all poses are in, likewise, as in [`super::ImportOptions::base_from_user_frame`].
-    pub base_from_user_frame: Option<[f64; 6]>,
+    /// The one frame that all poses are in, likewise.
+    pub base_from_user: Option<Transform<Base, Base>>,
 }
 
 /// Tools and user frames that poses refer to and that are not known.
@@ -25,6 +25,9 @@ pub(super) struct Frames {
 pub(super) struct Unknown {
     tools: BTreeMap<String, usize>,
     frames: BTreeMap<String, usize>,
+    /// Those that are taken so whatever the user gave.
+    undecided_tools: BTreeMap<&'static str, usize>,
+    undecided_frames: BTreeMap<&'static str, usize>,
     num_joint_poses: usize,
     num_other_groups: usize,
 }
@@ -36,6 +39,16 @@ impl Unknown {
 
     pub fn frame(&mut self, name: &str) {
         *self.frames.entry(name.to_owned()).or_default() += 1;
+    }
+
+    /// As [`Self::tool`], noted even where the user gave a tool for the others.
+    pub fn tool_in_any_case(&mut self, name: &'static str) {
+        *self.undecided_tools.entry(name).or_default() += 1;
+    }
+
+    /// As [`Self::frame`], likewise.
+    pub fn frame_in_any_case(&mut self, name: &'static str) {
+        *self.undecided_frames.entry(name).or_default() += 1;
     }
 
     pub const fn joint_pose(&mut self) {
@@ -59,6 +72,10 @@ impl Unknown {
             let tools = self.tools.into_iter();
             gathered.notes.extend(tools.map(|(tool, num_poses)| Note::ToolTakenAsFlange { tool, num_poses }));
         }
+        let frames = self.undecided_frames.into_iter().map(|(frame, num_poses)| (frame.to_owned(), num_poses));
+        gathered.notes.extend(frames.map(|(frame, num_poses)| Note::UserFrameTakenAsBase { frame, num_poses }));
+        let tools = self.undecided_tools.into_iter().map(|(tool, num_poses)| (tool.to_owned(), num_poses));
+        gathered.notes.extend(tools.map(|(tool, num_poses)| Note::ToolTakenAsFlange { tool, num_poses }));
         if self.num_joint_poses > 0 {
             gathered.notes.push(Note::JointPoses { num_poses: self.num_joint_poses });
         }

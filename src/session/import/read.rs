@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::geometry::PoseNotation;
-use crate::session::{Edit, Reading, parse};
+use crate::session::{Edit, EditRefusal, Reading, parse};
 use crate::watch::{Cancelled, Watch};
 
 use super::gather::Gathered;
@@ -102,7 +102,7 @@ impl<'o> Import<'o> {
                 published: None,
                 session: None,
             },
-            gathered: Gathered::new(options.notation.unwrap_or(*fallback), options.base_from_user_frame),
+            gathered: Gathered::new(options.notation.unwrap_or(*fallback)),
             profiles: Vec::new(),
             has_profile_columns: false,
             not_recognised: Vec::new(),
@@ -119,6 +119,7 @@ impl<'o> Import<'o> {
         progress: &mut Progress<'_>,
     ) -> Result<(), ImportError> {
         let kind = recognised.kind();
+        self.gathered.begin_source(&source.name);
         let poses_before = self.gathered.num_poses();
         let readings_before = self.profiles.len() + self.gathered.num_points();
         let mut preview = Preview::default();
@@ -127,25 +128,26 @@ impl<'o> Import<'o> {
             Recognised::Session => self.take_session(source, text)?,
             Recognised::Printed(tables) => {
                 let notation = options.notation.unwrap_or_else(|| printed::notation(self.fallback));
-                self.gathered.set_notation(notation, options.base_from_user_frame);
-                self.imported.published = printed::read(source, &tables, &mut self.gathered, &mut preview);
+                self.gathered.set_notation(notation, options.base_from_user_frame, None);
+                let published = printed::read(source, &tables, &mut self.gathered, &mut preview);
+                self.imported.published = self.imported.published.take().or(published);
                 filled.notation = Some(notation);
             }
             Recognised::Yaml(document) => {
                 if document.has_poses() {
                     let notation = options.notation.unwrap_or_else(|| document.notation(self.fallback));
-                    self.gathered.set_notation(notation, options.base_from_user_frame);
+                    self.gathered.set_notation(notation, options.base_from_user_frame, None);
                     filled.notation = Some(notation);
                 }
                 let read = document.read(source, options, &mut self.gathered, &mut preview, progress)?;
                 self.profiles.extend(read);
             }
             Recognised::Program(kind) => {
-                let mut frame = options.base_from_user_frame;
+                let mut own_frame = None;
                 let recognised = match kind {
                     Kind::AbbModule => {
                         let frames = abb::frames(text);
-                        frame = frame.or(frames.base_from_user_frame);
+                        own_frame = frames.base_from_user;
                         abb::notation(&frames, self.fallback)
                     }
                     Kind::KukaProgram => kuka::notation(self.fallback),
@@ -153,7 +155,7 @@ impl<'o> Import<'o> {
                     _ => fanuc::notation(self.fallback),
                 };
                 let notation = options.notation.unwrap_or(recognised);
-                self.gathered.set_notation(notation, frame);
+                self.gathered.set_notation(notation, options.base_from_user_frame, own_frame);
                 let read = match kind {
                     Kind::AbbModule => abb::read,
                     Kind::KukaProgram => kuka::read,
@@ -162,11 +164,11 @@ impl<'o> Import<'o> {
                 };
                 read(source, text, &mut self.gathered, &mut preview, progress)?;
                 filled.notation = Some(notation);
-                filled.base_from_user_frame = frame;
+                filled.base_from_user_frame = self.gathered.user_frame_numbers();
             }
             Recognised::Table(Kind::PoseTable, layout, columns) => {
                 let notation = options.notation.unwrap_or_else(|| table::notation(&layout, &columns, self.fallback));
-                self.gathered.set_notation(notation, options.base_from_user_frame);
+                self.gathered.set_notation(notation, options.base_from_user_frame, None);
                 table::read(source, text, &layout, &columns, &mut self.gathered, &mut preview, progress)?;
                 filled = ImportOptions {
                     separator: Some(layout.separator),
@@ -184,10 +186,11 @@ impl<'o> Import<'o> {
                 self.has_profile_columns |= has_columns;
                 filled.separator = Some(layout.separator);
                 filled.decimal_comma = Some(layout.has_decimal_comma);
-                filled.profile_length_unit = Some(profiles::length_unit(&layout, options));
+                filled.profile_length_unit = profiles::length_unit(&layout, has_columns, options);
                 preview.header.clone_from(layout.header.as_ref().unwrap_or(&Vec::new()));
             }
         }
+        let notation = filled.notation.filter(|_| self.gathered.num_poses() > poses_before);
         if is_main {
             self.imported.options = filled;
             self.imported.preview = preview;
@@ -197,6 +200,7 @@ impl<'o> Import<'o> {
             kind,
             num_poses: self.gathered.num_poses() - poses_before,
             num_readings: self.profiles.len() + self.gathered.num_points() - readings_before,
+            notation,
         });
         Ok(())
     }
@@ -208,7 +212,11 @@ impl<'o> Import<'o> {
             None => session,
             Some(first) => {
                 let edit = Edit::InsertStations { at: usize::MAX, stations: session.stations };
-                edit.apply(&first).unwrap_or(*first)
+                let refused = |refusal: EditRefusal| ImportError::NotAdded {
+                    file: source.name.clone(),
+                    problem: refusal.to_string(),
+                };
+                edit.apply(&first).map_err(refused)?
             }
         }));
         Ok(())
@@ -225,7 +233,13 @@ impl<'o> Import<'o> {
         }
         gathered.finish();
         if !profiles.is_empty() {
-            let names = matching::assign(&mut gathered.stations, &gathered.profile_keys, profiles, has_profile_columns);
+            let names = matching::assign(
+                &mut gathered.stations,
+                &gathered.profile_keys,
+                &gathered.source_starts,
+                profiles,
+                has_profile_columns,
+            );
             if !names.is_empty() {
                 gathered.notes.push(Note::ProfilesWithoutPose { names });
             }
@@ -236,6 +250,14 @@ impl<'o> Import<'o> {
         }
         if !not_recognised.is_empty() {
             gathered.notes.push(Note::SourcesLeftOut { names: not_recognised });
+        }
+        if let Some(published) = &mut imported.published {
+            // One row a station: beside stations of other sources it fits no more.
+            for rows in [&mut published.ball_in_base_mm, &mut published.error_from_first_mm] {
+                if rows.len() != gathered.stations.len() {
+                    rows.clear();
+                }
+            }
         }
         imported.stations = gathered.stations;
         imported.problems = gathered.problems;

@@ -103,6 +103,13 @@ fn table_kind(layout: &Layout, columns: &Columns) -> Kind {
     if is_pose && (names_a_pose || !is_along_a_line(layout)) {
         return Kind::PoseTable;
     }
+    // A header that names x and z says that they are one profile, whatever stands beside them.
+    if profiles::named(layout, "x").is_some() && profiles::named(layout, "z").is_some() && !is_pose {
+        let names_an_orientation = columns.roles.iter().any(|role| matches!(role, Role::Orientation(_)));
+        if !names_an_orientation && is_along_a_line(layout) {
+            return Kind::Profile;
+        }
+    }
     match layout.num_columns {
         ..=2 => Kind::Profile,
         _ if profiles::named(layout, "x") == Some(0) && profiles::named(layout, "z").is_none() && !is_pose => {

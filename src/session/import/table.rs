@@ -311,7 +311,12 @@ pub(super) fn notation(layout: &Layout, columns: &Columns, notation: &PoseNotati
         LengthUnit::Millimetres
     });
     let orientation = said.orientation.unwrap_or_default();
-    let is_rad = largest_angle > 0.0 && largest_angle <= std::f64::consts::TAU + 1e-3;
+    // Who names a maker's angles means them in that maker's unit; only else their size tells.
+    let usual = said.convention.filter(|_| said.orientation == Some(OrientationForm::Angles));
+    let is_of_a_maker = usual.is_some_and(|convention| {
+        convention.angle_names == ["W", "P", "R"] || convention.angle_names == ["A", "B", "C"]
+    });
+    let is_rad = !is_of_a_maker && largest_angle > 0.0 && largest_angle <= std::f64::consts::TAU + 1e-3;
     let angle_unit = match orientation {
         OrientationForm::Angles => {
             said.angle_unit.unwrap_or(if is_rad { AngleUnit::Radians } else { AngleUnit::Degrees })
@@ -389,6 +394,7 @@ pub(super) fn read(
         _ => (1..=columns.roles.len()).map(|column| column.to_string()).collect(),
     };
     gathered.reserve(records(text).count(), text.len());
+    let point_in_mm = columns.said.point_unit.map_or(1.0, LengthUnit::in_mm);
     let mut cells = Vec::new();
     let mut numbers = Vec::with_capacity(notation.num_numbers());
     for (idx, record) in records(text).skip_while(|record| record.line < layout.first_row_line).enumerate() {
@@ -409,8 +415,13 @@ pub(super) fn read(
             gathered.take(&source.name, &RawPose { at: (record.line, 1), ..RawPose::default() });
             break;
         }
+        // Spreadsheets leave rows of nothing but separators behind.
+        if cells.iter().all(|cell| cell.text.is_empty()) {
+            continue;
+        }
         match row(&cells, places, layout.has_decimal_comma, &mut numbers) {
             Ok(mut raw) => {
+                raw.point_in_sensor = raw.point_in_sensor.map(|point| point * point_in_mm);
                 raw.at = (record.line, cells.get(places.numbers[0]).map_or(1, |cell| cell.column(record.text)));
                 raw.numbers = &numbers;
                 gathered.take(&source.name, &raw);

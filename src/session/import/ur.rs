@@ -24,11 +24,19 @@ fn places(text: &str) -> impl Iterator<Item = usize> + '_ {
         let between = &text[from..*at];
         from = *at;
         is_comment = match between.rfind(['\n', '\r']) {
-            Some(end) => between[end..].contains('#'),
-            None => is_comment || between.contains('#'),
+            Some(end) => has_comment(&between[end..]),
+            None => is_comment || has_comment(between),
         };
         let is_word = between.chars().next_back().is_some_and(|c| c.is_alphanumeric() || c == '_');
         !is_word && !is_comment
+    })
+}
+
+/// Whether a comment begins; a number sign before a digit is part of a name, as in `Waypoint #1`.
+fn has_comment(text: &str) -> bool {
+    text.match_indices('#').any(|(at, _)| {
+        let is_in_a_name = !text[..at].trim().is_empty() && text[at + 1..].starts_with(|c: char| c.is_ascii_digit());
+        !is_in_a_name
     })
 }
 

@@ -162,3 +162,9 @@ pub fn out_exists(file: &str) -> String {
 pub fn no_stations(file: &str) -> String {
     format!("{file}: found profiles but no poses, expected a table or program with poses as well")
 }
+
+/// A table is not written in place of a session.
+#[must_use]
+pub fn over_a_session(file: &str) -> String {
+    format!("{file}: found a session file, expected another name for the table of poses")
+}

@@ -62,6 +62,7 @@ impl ImportMemory {
     /// Keeps what was set; nothing set is nothing to keep.
     pub fn remember(&mut self, form: &Form, options: &ImportOptions) {
         self.forget(form);
+        let options = &without_frames(form, options);
         if *options == ImportOptions::default() {
             return;
         }
@@ -73,6 +74,16 @@ impl ImportMemory {
     pub fn forget(&mut self, form: &Form) {
         self.forms.retain(|known| known.form != *form);
     }
+}
+
+/// Programs of a maker look all alike, but each is for its own tool and frame: those are not remembered.
+fn without_frames(form: &Form, options: &ImportOptions) -> ImportOptions {
+    const PROGRAMS: [Kind; 4] = [Kind::FanucProgram, Kind::AbbModule, Kind::KukaProgram, Kind::UrScript];
+    if !PROGRAMS.iter().any(|kind| name_of(&KINDS, *kind) == form.kind) {
+        return options.clone();
+    }
+    // A notation with no tool in it would take away the one that the next program defines.
+    ImportOptions { notation: None, base_from_user_frame: None, ..options.clone() }
 }
 
 /// [`ImportOptions`] in plain texts and numbers.
@@ -292,6 +303,15 @@ mod tests {
         };
         assert_eq!(without_tcp(was), without_tcp(is));
         assert_eq!(again.recall(&form(&["x", "z"])), None);
+    }
+
+    #[test]
+    fn the_tool_and_frame_of_one_program_are_not_those_of_the_next() {
+        let mut memory = ImportMemory::default();
+        let form = Form { kind: "fanuc".to_owned(), header: Vec::new() };
+        memory.remember(&form, &all_set());
+        let recalled = memory.recall(&form).expect("remembered");
+        assert_eq!((recalled.notation, recalled.base_from_user_frame), (None, None));
     }
 
     #[test]

@@ -177,7 +177,13 @@ mod tests {
         };
         let imported = Imported {
             options: ImportOptions { kind: Some(Kind::PoseTable), ..ImportOptions::default() },
-            parts: vec![Part { name: "a.csv".to_owned(), kind: Kind::PoseTable, num_poses: 0, num_readings: 0 }],
+            parts: vec![Part {
+                name: "a.csv".to_owned(),
+                kind: Kind::PoseTable,
+                num_poses: 0,
+                num_readings: 0,
+                notation: None,
+            }],
             preview: Preview { rows: vec![(2, cells)], num_rows: 1, ..Preview::default() },
             stations: Vec::new(),
             problems: vec![problem],
