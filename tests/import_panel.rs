@@ -176,7 +176,8 @@ fn problems_are_listed_with_their_place_and_marked_in_the_table() {
 
 #[test]
 fn a_new_session_needs_a_radius_and_then_is_the_next_step() {
-    let mut harness = Bench::with(TABLE).harness();
+    let poses: Vec<String> = TABLE.lines().map(|line| line.split(',').take(7).collect::<Vec<_>>().join(",")).collect();
+    let mut harness = Bench::with(&poses.join("\n")).harness();
     click(&mut harness, words::NEW_SESSION);
     assert!(harness.state().commands.is_empty(), "without a radius there is no ball");
     type_into(&mut harness, words::RADIUS_FIELD, "12,5");
@@ -184,6 +185,14 @@ fn a_new_session_needs_a_radius_and_then_is_the_next_step() {
     let into = ImportInto::NewSession { name: "Pasted poses".to_owned(), target: Target::ball(12.5) };
     assert_eq!(harness.state().commands, [Command::FinishImport(into)]);
     assert_eq!(harness.state().memory.ball_radius_mm, Some(12.5));
+}
+
+#[test]
+fn points_that_are_reduced_need_no_radius_of_the_user() {
+    let mut harness = Bench::with(TABLE).harness();
+    click(&mut harness, words::NEW_SESSION);
+    let into = ImportInto::NewSession { name: "Pasted poses".to_owned(), target: Target::ball(15.0) };
+    assert_eq!(harness.state().commands, [Command::FinishImport(into)]);
 }
 
 #[test]

@@ -119,7 +119,9 @@ impl Workbench {
                         self.put_on_bench(document);
                     }
                 }
-                Purpose::Reload { document_id } => self.take_reloaded(document_id, path.as_deref(), session, stamp, is_read_only),
+                Purpose::Reload { document_id } => {
+                    self.take_reloaded(document_id, path.as_deref(), session, stamp, is_read_only)
+                }
             },
             JobOutcome::Done(Loaded { purpose: Purpose::Open, session: Err(error), .. }) => {
                 self.notify_of_opening(error.to_string());
@@ -143,7 +145,8 @@ impl Workbench {
         is_read_only: bool,
     ) {
         // Its file may have become another meanwhile.
-        if self.document.as_ref().is_none_or(|document| document.id != document_id || document.path.as_deref() != path) {
+        if self.document.as_ref().is_none_or(|document| document.id != document_id || document.path.as_deref() != path)
+        {
             return;
         }
         self.forget_errors();
