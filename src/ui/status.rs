@@ -4,8 +4,9 @@ use egui::{Align, Layout, ProgressBar, RichText, Ui};
 
 use crate::app::{Command, Notice, NoticeKind, Progress, Workbench};
 use crate::diagnose::{Finding, Severity};
-use crate::session::Reading;
+use crate::session::{Reading, Target};
 use crate::text::diagnosis_panel as panel_words;
+use crate::text::import as import_words;
 use crate::text::shell as words;
 use crate::text::start::captures as captures_text;
 
@@ -41,7 +42,10 @@ fn next(workbench: &Workbench, step: Step) -> Option<(String, Action)> {
     if num_findings > 0 && step != Step::Diagnosis {
         return Some((words::next_findings(num_findings), Action::GoTo(Step::Diagnosis)));
     }
+    let is_empty = document.session.stations.is_empty() && !matches!(document.session.target, Target::Rgbd { .. });
     let (label, action) = match step {
+        Step::Poses if is_empty => (import_words::IMPORT, Action::Import),
+        _ if is_empty => (words::NEXT_POSES, Action::GoTo(Step::Poses)),
         Step::Session => (words::NEXT_ARCS, Action::GoTo(Step::Arcs)),
         Step::Arcs => (words::NEXT_POSES, Action::GoTo(Step::Poses)),
         Step::Poses => (words::NEXT_COMPARE, Action::GoTo(Step::Compare)),

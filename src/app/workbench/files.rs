@@ -120,7 +120,7 @@ impl Workbench {
                     }
                 }
                 Purpose::Reload { document_id } => {
-                    self.take_reloaded(document_id, path.as_deref(), session, stamp, is_read_only)
+                    self.take_reloaded(document_id, path.as_deref(), session, stamp, is_read_only);
                 }
             },
             JobOutcome::Done(Loaded { purpose: Purpose::Open, session: Err(error), .. }) => {

@@ -194,7 +194,11 @@ impl Grid<'_> {
         if num_rows == 0 {
             let at = geometry.viewport.center() - vec2(0.0, ROW_HEIGHT);
             ui.painter().text(at, Align2::CENTER_BOTTOM, words::EMPTY, ink.body.clone(), ink.palette.text);
-            ui.painter().text(at, Align2::CENTER_TOP, words::NO_STATIONS, ink.small.clone(), ink.palette.text_dim);
+            let hint = words::NO_STATIONS.to_owned();
+            let width = geometry.viewport.width() - 4.0 * theme::GAP;
+            let galley = ui.painter().layout(hint, ink.small.clone(), ink.palette.text_dim, width);
+            let rect = Align2::CENTER_TOP.anchor_size(at + vec2(0.0, 4.0), galley.size());
+            ui.painter().galley(rect.min, galley, ink.palette.text_dim);
         }
         self.cursor(ui, sheet, geometry, ink);
         Self::editor(ui, sheet, geometry, commands);

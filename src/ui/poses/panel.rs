@@ -186,8 +186,6 @@ fn show_line(ui: &mut Ui, sheet: &mut Sheet, document: &Document) {
         {
             sheet.go_to(place, column);
         }
-    } else if session.stations.is_empty() {
-        ui.label(theme::dim(ui, words::NO_STATIONS));
     } else {
         ui.add(Label::new(theme::dim(ui, words::KEYS_HINT).small()).truncate());
     }
