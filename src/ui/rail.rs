@@ -133,7 +133,7 @@ fn mark(workbench: &Workbench, selection: &Selection, num_pose_remarks: usize, s
     match step {
         Step::Session => Mark::Fine("✔".to_owned()),
         // Nothing is no reason for a tick.
-        Step::Arcs | Step::Poses if document.session.stations.is_empty() => Mark::None,
+        Step::Arcs | Step::Poses | Step::Diagnosis if document.session.stations.is_empty() => Mark::None,
         Step::Arcs => counted(super::poses::model::num_refused(&document.session, results)),
         Step::Poses => counted(num_pose_remarks),
         Step::Compare => match results.method(selection.method).map(|result| &result.outcome) {

@@ -33,19 +33,23 @@ pub fn show(ui: &mut Ui, workbench: &Workbench, step: Step, actions: &mut Vec<Ac
     });
 }
 
-/// Along the rail; findings go first wherever one is, as they change all that follows.
+/// Along the rail. A session without stations needs some; findings go first wherever one is, as they change all that follows.
 fn next(workbench: &Workbench, step: Step) -> Option<(String, Action)> {
     let document = workbench.document()?;
+    if document.session.stations.is_empty() && !matches!(document.session.target, Target::Rgbd { .. }) {
+        let (label, action) = match step {
+            Step::Poses => (import_words::IMPORT, Action::Import),
+            _ => (words::NEXT_POSES, Action::GoTo(Step::Poses)),
+        };
+        return Some((label.to_owned(), action));
+    }
     let is_serious = |finding: &&Finding| finding.severity != Severity::Note;
     let findings = workbench.current_diagnosis().map_or(&[][..], |diagnosis| &diagnosis.findings);
     let num_findings = findings.iter().filter(is_serious).count();
     if num_findings > 0 && step != Step::Diagnosis {
         return Some((words::next_findings(num_findings), Action::GoTo(Step::Diagnosis)));
     }
-    let is_empty = document.session.stations.is_empty() && !matches!(document.session.target, Target::Rgbd { .. });
     let (label, action) = match step {
-        Step::Poses if is_empty => (import_words::IMPORT, Action::Import),
-        _ if is_empty => (words::NEXT_POSES, Action::GoTo(Step::Poses)),
         Step::Session => (words::NEXT_ARCS, Action::GoTo(Step::Arcs)),
         Step::Arcs => (words::NEXT_POSES, Action::GoTo(Step::Poses)),
         Step::Poses => (words::NEXT_COMPARE, Action::GoTo(Step::Compare)),

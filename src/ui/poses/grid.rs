@@ -195,7 +195,9 @@ impl Grid<'_> {
             let at = geometry.viewport.center() - vec2(0.0, ROW_HEIGHT);
             ui.painter().text(at, Align2::CENTER_BOTTOM, words::EMPTY, ink.body.clone(), ink.palette.text);
             let hint = words::NO_STATIONS.to_owned();
-            let width = geometry.viewport.width() - 4.0 * theme::GAP;
+            // The check column stands over the others, so there is less room than the grid is wide.
+            let clip = ui.clip_rect();
+            let width = 2.0 * ((clip.right() - at.x).min(at.x - clip.left()) - theme::GAP).max(0.0);
             let galley = ui.painter().layout(hint, ink.small.clone(), ink.palette.text_dim, width);
             let rect = Align2::CENTER_TOP.anchor_size(at + vec2(0.0, 4.0), galley.size());
             ui.painter().galley(rect.min, galley, ink.palette.text_dim);
