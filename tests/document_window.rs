@@ -413,3 +413,24 @@ fn what_is_pasted_into_an_empty_table_is_shown_before_it_is_taken() {
     assert!(workbench(&harness).import().is_some(), "the preview asks");
     assert_eq!(document(&harness).session.stations, []);
 }
+
+#[test]
+fn keys_answer_the_question_that_waits_and_nothing_below_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (mut harness, _) = window_with_file(folder.path());
+    set_notes(&mut harness, "mine");
+    request(&mut harness, Command::CloseDocument);
+    harness.get_by_label(shell_words::DISCARD);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    settle(&mut harness);
+    harness.key_press(Key::Num3);
+    settle(&mut harness);
+    assert_eq!(document(&harness).session.notes, "mine");
+    assert_eq!(harness.state().shell().step(), handeye::ui::Step::Session);
+    harness.key_press(Key::Escape);
+    settle(&mut harness);
+    assert!(harness.query_by_label(shell_words::DISCARD).is_none(), "Escape goes on working");
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    settle(&mut harness);
+    assert_ne!(document(&harness).session.notes, "mine");
+}

@@ -158,6 +158,11 @@ impl Shell {
         }
     }
 
+    /// Whether a question waits for its answer.
+    pub(super) fn is_asking(&self) -> bool {
+        self.unsaved_question.is_some() || self.save_path.is_some() || self.workbench.conflict().is_some()
+    }
+
     pub(super) fn questions(&mut self, ctx: &Context) {
         dialogs::help(ctx, &self.workbench, &mut self.is_help_open);
         if let Some((purpose, answer)) =

@@ -182,22 +182,27 @@ impl Shell {
     /// Draws one frame and carries out what the user asked for in it.
     pub fn ui(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
-        let mut actions = actions::pressed(&ctx, &self.workbench);
+        // What is typed while a question waits is its answer, and nothing for what lies below.
+        let is_asking = self.is_asking();
+        let mut actions = if is_asking { Vec::new() } else { actions::pressed(&ctx, &self.workbench) };
         let mut commands = Vec::new();
         if actions.iter().any(|action| action.takes_what_is_typed()) {
             take_what_is_typed(&ctx);
         }
-        Self::read_dropped_files(&ctx, &mut commands);
-        self.take_pasted_text(&ctx, &mut commands);
+        if !is_asking {
+            Self::read_dropped_files(&ctx, &mut commands);
+            self.take_pasted_text(&ctx, &mut commands);
+        }
         let is_importing = self.workbench.import().is_some();
         if is_importing {
             actions.retain(|action| *action == Action::Quit);
         }
-        // What is typed into the preview is not for the panels below it.
-        let events = if is_importing { ctx.input_mut(|input| std::mem::take(&mut input.events)) } else { Vec::new() };
+        // Nor is what is typed into the preview.
+        let is_covered = is_importing || is_asking;
+        let events = if is_covered { ctx.input_mut(|input| std::mem::take(&mut input.events)) } else { Vec::new() };
         self.bars(ui, &mut actions, &mut commands);
         self.center(ui, &mut actions, &mut commands);
-        if is_importing {
+        if is_covered {
             ctx.input_mut(|input| input.events = events);
         }
         self.history.show(&ctx, &self.workbench, &mut commands);
