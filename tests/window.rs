@@ -411,3 +411,20 @@ fn in_the_table_digits_are_typed_and_undo_is_the_texts_own() {
     settle(&mut harness);
     assert_eq!(x_mm(&harness), "340.971");
 }
+
+#[test]
+fn closing_asks_about_a_cell_that_could_not_be_read() {
+    let mut harness = window_with("few-rotations.json");
+    click(&mut harness, Step::Poses.name());
+    click(&mut harness, "z of 1");
+    harness.event(egui::Event::Text("abc".to_owned()));
+    settle(&mut harness);
+    harness.key_press(Key::Enter);
+    settle(&mut harness);
+    assert!(!workbench(&harness).document().expect("open").is_unsaved(), "the text is not in the session");
+    harness.state_mut().shell_mut().request(Command::CloseDocument);
+    settle(&mut harness);
+    harness.get_by_label(&shell_words::unread_cells(1));
+    click(&mut harness, shell_words::DISCARD);
+    assert!(workbench(&harness).document().is_none());
+}

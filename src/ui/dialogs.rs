@@ -25,13 +25,16 @@ pub enum UnsavedAnswer {
     Cancel,
 }
 
-/// Asks what is to become of unsaved changes.
+/// Asks what is to become of unsaved changes, and says how many cells hold a text that no file can.
 #[must_use]
-pub fn ask_unsaved(ctx: &Context, title: &str) -> Option<UnsavedAnswer> {
+pub fn ask_unsaved(ctx: &Context, title: &str, num_unread: usize) -> Option<UnsavedAnswer> {
     let mut answer = None;
     let response = modal(ctx, "unsaved changes").show(ctx, |ui| {
         question_heading(ui, &words::save_changes_to(title));
         ui.label(theme::dim(ui, words::SAVE_CHANGES_HINT));
+        if num_unread > 0 {
+            ui.label(egui::RichText::new(words::unread_cells(num_unread)).color(theme::palette(ui).warn));
+        }
         ui.add_space(16.0);
         ui.horizontal(|ui| {
             if widgets::primary_button(ui, words::SAVE).clicked() {

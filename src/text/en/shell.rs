@@ -257,6 +257,13 @@ pub fn save_changes_to(title: &str) -> String {
 
 /// The question's explanation.
 pub const SAVE_CHANGES_HINT: &str = "Without saving they are lost.";
+/// What saving does not save.
+#[must_use]
+pub fn unread_cells(number: usize) -> String {
+    let (texts, are) = if number == 1 { ("text", "is") } else { ("texts", "are") };
+    format!("! {number} unreadable {texts} in Poses {are} not part of the session and cannot be saved.")
+}
+
 /// Button.
 pub const DISCARD: &str = "Discard";
 /// Heading of the save dialog.

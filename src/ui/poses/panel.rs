@@ -36,11 +36,17 @@ pub struct PosesState {
 }
 
 impl PosesState {
+    /// Number of cells with a text that could not be read and so is not in the session.
+    #[must_use]
+    pub fn num_unread(&self, workbench: &Workbench) -> usize {
+        workbench.document().map_or(0, |document| self.sheet.pending.count(&document.session))
+    }
+
     /// Number of stations to look at, and of texts that are not in the session, for the rail.
     pub fn num_remarks(&mut self, workbench: &Workbench, method: Method) -> usize {
         let Some(document) = workbench.document() else { return 0 };
         self.checks.refresh(workbench, method);
-        self.checks.num_stations(&document.session) + self.sheet.pending.count(&document.session)
+        self.checks.num_stations(&document.session) + self.num_unread(workbench)
     }
 }
 

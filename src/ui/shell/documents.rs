@@ -32,7 +32,7 @@ impl Shell {
                 | Command::CloseDocument
                 | Command::FinishImport(ImportInto::NewSession { .. })
         );
-        if replaces && self.workbench.document().is_some_and(Document::is_unsaved) {
+        if replaces && self.would_lose_something() {
             self.unsaved_question = Some(Pending::Command(command));
             return;
         }
@@ -145,7 +145,7 @@ impl Shell {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             self.is_quitting = false;
             self.after_saving = Some(Pending::Quit);
-        } else if self.workbench.document().is_some_and(Document::is_unsaved) && !self.is_quitting {
+        } else if self.would_lose_something() && !self.is_quitting {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             self.unsaved_question = Some(Pending::Quit);
         }
@@ -156,6 +156,11 @@ impl Shell {
         if self.is_quitting || !self.workbench.document().is_some_and(Document::is_unsaved) {
             self.workbench.end();
         }
+    }
+
+    /// Whether there are changes that no file holds, or texts in cells that none can hold.
+    fn would_lose_something(&self) -> bool {
+        self.workbench.document().is_some_and(Document::is_unsaved) || self.poses.num_unread(&self.workbench) > 0
     }
 
     /// Whether a question waits for its answer.
@@ -179,7 +184,9 @@ impl Shell {
             self.unsaved_question = None;
             return;
         };
-        let Some(answer) = dialogs::ask_unsaved(ctx, &document.title()) else { return };
+        let Some(answer) = dialogs::ask_unsaved(ctx, &document.title(), self.poses.num_unread(&self.workbench)) else {
+            return;
+        };
         let Some(pending) = self.unsaved_question.take() else { return };
         match answer {
             UnsavedAnswer::Save => {
