@@ -13,7 +13,7 @@
 //! | 6 | [`report`] | result files, digits |
 //! | 5 | [`text`] | wording |
 //! | 4 | [`diagnose`], [`simulate`] | what is wrong with a session, and its remedies · simulated sessions |
-//! | 3 | [`session`], [`plan`] | the document: model, file format, checks, history, measuring · where to measure next |
+//! | 3 | [`session`], [`plan`] | the document: model, edits, history, table, file format, imports, checks, measuring · where to measure next |
 //! | 2 | [`calibrate`] | hand-eye methods, least squares on SE(3), uncertainty, validation |
 //! | 1 | [`fit`] | circle fits and the extraction of arcs |
 //! | 0 | [`geometry`], [`watch`] | frames, rotations, conventions, profile, statistics · progress and cancel |
