@@ -4,11 +4,11 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use crate::app::Document;
-use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
 use crate::session::edit::shown_numbers;
 use crate::session::table::{self, Column, order::order_by};
 use crate::session::{Place, Row, Session};
 
+use super::convention::model::decimals;
 use super::pending::renamed;
 
 /// Widest a column of numbers becomes, points.
@@ -243,15 +243,7 @@ pub struct Layout {
 #[must_use]
 pub fn decimals_shown(notation: &crate::geometry::PoseNotation, column: Column) -> usize {
     match column {
-        Column::Number(0..3) => match notation.length_unit {
-            LengthUnit::Millimetres => 3,
-            LengthUnit::Metres => 6,
-        },
-        Column::Number(_) => match (notation.orientation, notation.angle_unit) {
-            (OrientationForm::Angles, AngleUnit::Degrees) => 3,
-            (OrientationForm::Angles, AngleUnit::Radians) => 6,
-            (OrientationForm::QuaternionWxyz | OrientationForm::QuaternionXyzw, _) => 5,
-        },
+        Column::Number(idx) => decimals(notation, idx),
         Column::Step | Column::Point(_) => 3,
         Column::Used | Column::Label | Column::Side | Column::Edge => 0,
     }
