@@ -12,10 +12,10 @@
 //! | 7 | [`app`] | the workbench: document, history, results, jobs, notices |
 //! | 6 | [`report`] | result files, digits |
 //! | 5 | [`text`] | wording |
-//! | 4 | [`diagnose`], [`simulate`] | what is wrong with a session, and its remedies · simulated sessions |
+//! | 4 | [`device`], [`diagnose`], [`simulate`] | robots and sensors, the search for the largest arc, the simulated cell · what is wrong with a session, and its remedies · simulated sessions |
 //! | 3 | [`session`], [`plan`] | the document: model, edits, history, table, file format, imports, checks, measuring · where to measure next |
 //! | 2 | [`calibrate`] | hand-eye methods, least squares on SE(3), uncertainty, validation |
-//! | 1 | [`fit`] | circle fits and the extraction of arcs |
+//! | 1 | [`fit`], [`scene`] | circle fits and the extraction of arcs · what a laser line sees |
 //! | 0 | [`geometry`], [`watch`] | frames, rotations, conventions, profile, statistics · progress and cancel |
 //!
 //! # Invariants
@@ -26,11 +26,13 @@
 pub mod app;
 pub mod calibrate;
 pub mod cli;
+pub mod device;
 pub mod diagnose;
 pub mod fit;
 pub mod geometry;
 pub mod plan;
 pub mod report;
+pub mod scene;
 pub mod session;
 pub mod simulate;
 pub mod text;

@@ -1,5 +1,7 @@
 //! How long work reports progress and learns that it is no longer wanted.
 
+use std::sync::Arc;
+
 use thiserror::Error;
 
 /// The work was cancelled; there is no result.
@@ -25,3 +27,6 @@ impl Watch for Unwatched {
         Ok(())
     }
 }
+
+/// Called from a worker when there is news, e.g. to ask for a repaint.
+pub type Wake = Arc<dyn Fn() + Send + Sync>;

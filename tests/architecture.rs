@@ -5,13 +5,15 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// A module may name only floors below its own.
-const FLOORS: [(&str, u8); 13] = [
+const FLOORS: [(&str, u8); 15] = [
     ("geometry", 0),
     ("watch", 0),
     ("fit", 1),
+    ("scene", 1),
     ("calibrate", 2),
     ("plan", 3),
     ("session", 3),
+    ("device", 4),
     ("diagnose", 4),
     ("simulate", 4),
     ("text", 5),

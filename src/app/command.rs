@@ -8,6 +8,8 @@ use crate::plan::Limits;
 use crate::session::import::ImportOptions;
 use crate::session::{Edit, Target};
 
+use super::cell::CellCommand;
+
 impl Command {
     /// Reads what a user has pointed at: a session is opened, anything else goes to the import's preview.
     #[must_use]
@@ -135,6 +137,8 @@ pub enum Command {
     CancelBootstrap,
     /// Plans the next stations within other limits.
     SetPlanLimits(Limits),
+    /// Something for the live cell.
+    Cell(Box<CellCommand>),
     /// Removes a notice.
     DismissNotice(u64),
 }

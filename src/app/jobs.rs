@@ -6,10 +6,8 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
 use std::thread;
 
+pub use crate::watch::Wake;
 use crate::watch::{Cancelled, Watch};
-
-/// Called from a worker when there is news, e.g. to ask for a repaint.
-pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
 #[derive(Debug, Default)]
 struct Shared {

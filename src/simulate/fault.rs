@@ -6,11 +6,11 @@ use nalgebra::{Quaternion, Translation3, UnitQuaternion};
 
 use crate::calibrate::{Mount, Side, SideChoice};
 use crate::geometry::{PoseConvention, Profile, Rigid, Transform, Vec3, so3};
+use crate::scene::Random;
 use crate::session::model::{Capture, Reading, Session, Target, Truth, WrittenAngles};
 
 use super::options::SimulationOptions;
 use super::path::StationPath;
-use super::random::Random;
 use super::stream;
 
 /// A fault. Its name is the code that the diagnosis gives it.

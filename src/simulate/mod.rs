@@ -3,21 +3,19 @@
 mod fault;
 mod options;
 mod path;
-mod random;
-mod scene;
 
 use std::sync::Arc;
 
 use crate::calibrate::{Mount, SideChoice};
 use crate::geometry::{Rigid, Transform, Vec3, so3};
+use crate::scene::{Random, Scene, rounded, rounded_rotation};
 use crate::session::model::{Capture, Reading, Robot, Sensor, Session, Station, Target, Truth, UnknownFields};
 
 use path::{Setup, StationPath};
-use random::Random;
-use scene::{Scene, rounded, rounded_rotation};
 
+pub use crate::scene::Dirt;
 pub use fault::Fault;
-pub use options::{Dirt, SimulationOptions};
+pub use options::SimulationOptions;
 
 /// Decimals of reported quaternions where positions and points are rounded: a thousand times finer than any robot is.
 const QUATERNION_DECIMALS: u8 = 9;

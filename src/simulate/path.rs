@@ -6,10 +6,9 @@ use nalgebra::{Translation3, UnitQuaternion};
 
 use crate::calibrate::Mount;
 use crate::geometry::{Rigid, Vec3, so3};
+use crate::scene::{Random, rounded_rotation};
 
 use super::options::SimulationOptions;
-use super::random::Random;
-use super::scene::rounded_rotation;
 
 /// Turns by this angle from station to station never line up (the golden angle).
 const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;

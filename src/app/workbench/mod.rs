@@ -1,5 +1,6 @@
 //! Document, results, jobs and notices, changed only by commands and finished jobs.
 
+mod cell;
 mod edits;
 mod exports;
 mod files;
@@ -20,7 +21,7 @@ use crate::watch::Cancelled;
 use super::jobs::{JobOutcome, Slot, Wake};
 use super::recovery::{Recoverable, Recovery};
 use super::study::Study;
-use super::{Command, Document};
+use super::{CellView, Command, Document};
 
 use self::exports::Exported;
 use self::files::{Loaded, Look, Save, SaveOutcome};
@@ -98,6 +99,7 @@ pub struct Workbench {
     bootstrap: Study<Bootstrap>,
     imports: Imports,
     exporting: Slot<Exported>,
+    cell: CellView,
 }
 
 impl Workbench {
@@ -129,6 +131,7 @@ impl Workbench {
             bootstrap: Study::default(),
             imports: Imports::default(),
             exporting: Slot::default(),
+            cell: CellView::default(),
         }
     }
 
@@ -281,6 +284,7 @@ impl Workbench {
                 self.plan.clear();
                 self.start_planning();
             }
+            Command::Cell(command) => self.command_cell(*command),
             Command::DismissNotice(id) => self.notices.retain(|notice| notice.id != id),
         }
     }

@@ -9,10 +9,11 @@ use crate::geometry::Vec3;
 
 /// A generator of uniform and normal numbers.
 #[derive(Clone, Debug)]
-pub(super) struct Random(Pcg64);
+pub struct Random(Pcg64);
 
 impl Random {
     /// A stream of its own for each purpose, so that switching one kind of noise on leaves the others as they were.
+    #[must_use]
     pub fn new(seed: u64, stream: u64) -> Self {
         /// The golden ratio in 64 bits: spreads neighbouring streams over all seeds.
         const SPREAD: u64 = 0x9e37_79b9_7f4a_7c15;

@@ -1,11 +1,14 @@
-//! What a laser line sees: the ball, and the table below it.
+//! What a laser line sees: the ball, and the table below it; and the seeded randomness of all that is simulated.
+
+mod dirt;
+pub mod random;
 
 use nalgebra::{Quaternion, UnitQuaternion};
 
 use crate::geometry::{Profile, Rigid, Vec3};
 
-use super::options::Dirt;
-use super::random::Random;
+pub use dirt::Dirt;
+pub use random::Random;
 
 /// Steeper than this, no light comes back to the sensor.
 const MAX_INCIDENCE_DEG: f64 = 75.0;
@@ -31,14 +34,20 @@ const WIDTH_RADII: f64 = 3.0;
 
 /// The ball and its table, standing still in their world: the base, or the flange for a fixed sensor.
 #[derive(Clone, Debug)]
-pub(super) struct Scene {
+pub struct Scene {
+    /// Centre of the ball, mm.
     pub ball_in_world: Vec3,
+    /// Its radius, mm.
     pub radius_mm: f64,
+    /// Points of a profile.
     pub num_points: usize,
     /// +1 where z grows away from the sensor, −1 where it grows towards it.
     pub range_sign: f64,
+    /// Noise of a point along the range axis, mm.
     pub profile_std_mm: f64,
+    /// What else the profiles hold.
     pub dirt: Dirt,
+    /// Decimals that coordinates are rounded to.
     pub decimals: Option<u8>,
 }
 
@@ -52,11 +61,13 @@ struct Hit {
 
 impl Scene {
     /// The same with the ball somewhere else; the table stays below it.
+    #[must_use]
     pub fn with_ball_shifted_by(&self, shift_mm: Vec3) -> Self {
         Self { ball_in_world: self.ball_in_world + shift_mm, ..self.clone() }
     }
 
     /// The profile of a sensor standing at `world_from_sensor`.
+    #[must_use]
     pub fn profile(&self, world_from_sensor: &Rigid, noise: &mut Random, dirt: &mut Random) -> Profile {
         let ball_in_sensor = world_from_sensor.inverse_transform_point(&self.ball_in_world.into()).coords;
         let x_mm: Vec<f64> = (0..self.num_points).map(|idx| self.rounded(self.grid_x_mm(idx))).collect();
@@ -130,7 +141,8 @@ impl Scene {
 }
 
 /// To so many decimals.
-pub(super) fn rounded(value: f64, decimals: Option<u8>) -> f64 {
+#[must_use]
+pub fn rounded(value: f64, decimals: Option<u8>) -> f64 {
     decimals.map_or(value, |decimals| {
         let scale = 10.0_f64.powi(i32::from(decimals));
         (value * scale).round() / scale
@@ -140,7 +152,8 @@ pub(super) fn rounded(value: f64, decimals: Option<u8>) -> f64 {
 /// A rotation whose quaternion was rounded to so many decimals and normalised again.
 ///
 /// The last bits of sines and cosines differ between systems; after rounding the same seed gives the same file.
-pub(super) fn rounded_rotation(rotation: &UnitQuaternion<f64>, decimals: u8) -> UnitQuaternion<f64> {
+#[must_use]
+pub fn rounded_rotation(rotation: &UnitQuaternion<f64>, decimals: u8) -> UnitQuaternion<f64> {
     let quaternion = rotation.as_ref().coords.map(|value| rounded(value, Some(decimals)));
     UnitQuaternion::new_normalize(Quaternion::from_vector(quaternion))
 }

@@ -1,0 +1,108 @@
+//! What can go wrong between us and a device: what was asked, what was found, what was needed, what to do.
+
+use std::time::Duration;
+
+use thiserror::Error;
+
+/// Why a device did not do what it was asked.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+pub enum DeviceError {
+    /// Nobody answers at the address.
+    #[error("{device}: no connection to {address} ({reason}); {remedy}")]
+    NotConnected {
+        /// The device's name.
+        device: &'static str,
+        /// Host and port.
+        address: String,
+        /// What the system said.
+        reason: String,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// The deadline passed.
+    #[error("{device}: no answer to {request} within {} ms; check the cable, and that the controller is not paused", waited.as_millis())]
+    Timeout {
+        /// The device's name.
+        device: &'static str,
+        /// What was asked.
+        request: String,
+        /// How long it was waited for.
+        waited: Duration,
+    },
+    /// The other side closed the connection.
+    #[error("{device}: the connection was closed during {request}; see whether its program still runs")]
+    Closed {
+        /// The device's name.
+        device: &'static str,
+        /// What was asked.
+        request: String,
+    },
+    /// The answer is none of this protocol.
+    #[error("{device}: found {found} in answer to {request}, needed {expected}; {remedy}")]
+    Unexpected {
+        /// The device's name.
+        device: &'static str,
+        /// What was asked.
+        request: String,
+        /// What came.
+        found: String,
+        /// What should have come.
+        expected: String,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// The device understood and says no.
+    #[error("{device}: {request} was refused: {found}; {remedy}")]
+    Refused {
+        /// The device's name.
+        device: &'static str,
+        /// What was asked.
+        request: String,
+        /// What it said.
+        found: String,
+        /// What to do.
+        remedy: String,
+    },
+    /// The device is not in a state to do that.
+    #[error("{device}: found {found}, needed {needed}; {remedy}")]
+    NotReady {
+        /// The device's name.
+        device: &'static str,
+        /// Its state.
+        found: String,
+        /// The state that it would have to be in.
+        needed: &'static str,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// This driver only reads.
+    #[error("{device}: this connection can only read; jog the robot by hand, or connect with a driver that moves it")]
+    CannotMove {
+        /// The device's name.
+        device: &'static str,
+    },
+    /// The robot stopped somewhere else than it was sent.
+    #[error("{device}: stopped {distance_mm:.3} mm from the target of the move; clear what holds it up and look at its alarms", distance_mm = f64::from(*distance_um) / 1000.0)]
+    NotArrived {
+        /// The device's name.
+        device: &'static str,
+        /// How far from the target, µm.
+        distance_um: u32,
+    },
+    /// Somebody pressed stop.
+    #[error("{device}: stopped on request")]
+    Stopped {
+        /// The device's name.
+        device: &'static str,
+    },
+    /// The system refused something else than the network: a folder, a file, a thread.
+    #[error("{device}: {what} failed ({reason})")]
+    System {
+        /// The device's name.
+        device: &'static str,
+        /// What was tried.
+        what: String,
+        /// What the system said.
+        reason: String,
+    },
+}
