@@ -53,7 +53,7 @@ fn is_row_of_numbers(cells: &[Cell<'_>], has_decimal_comma: bool) -> bool {
 }
 
 /// What separates the cells, and whether the numbers have a decimal comma.
-fn separation(text: &str, given: &Given) -> Option<(Separator, bool)> {
+fn separation(text: &str, given: Given) -> Option<(Separator, bool)> {
     /// In doubt the earlier: blanks are within cells more often than tabulators.
     const ORDER: [Separator; 4] = [Separator::Tab, Separator::Semicolon, Separator::Comma, Separator::Blanks];
     /// A later separator must explain the cells better by so much.
@@ -97,7 +97,7 @@ fn separation(text: &str, given: &Given) -> Option<(Separator, bool)> {
 }
 
 /// The layout of a table; `None` if there are no rows of numbers.
-pub fn layout(text: &str, given: &Given) -> Option<Layout> {
+pub fn layout(text: &str, given: Given) -> Option<Layout> {
     let (separator, has_decimal_comma) = separation(text, given)?;
     let mut layout = Layout {
         separator,

@@ -164,7 +164,7 @@ pub fn of_sheet(text: &str, z_sign: f64) -> Result<Profile, String> {
     /// A number of the point, x, y and z.
     const MOST_COLUMNS_WITHOUT_NAMES: usize = 4;
     let text = without_mark(text);
-    let Some(layout) = layout(text, &Given::default()) else {
+    let Some(layout) = layout(text, Given::default()) else {
         let line = excerpt(text.trim().lines().next().unwrap_or_default());
         return Err(if line.is_empty() { "nothing".to_owned() } else { format!("\"{line}\" and no row of numbers") });
     };

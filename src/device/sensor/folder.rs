@@ -154,7 +154,7 @@ impl FolderDriver {
     /// Since when a file stands as it is.
     fn fresh_of(&self, name: &OsString, stamp: Stamp, now: Instant) -> Fresh {
         let before = self.fresh.get(name).filter(|fresh| fresh.stamp == stamp);
-        before.cloned().unwrap_or_else(|| Fresh { stamp, since: now })
+        before.cloned().unwrap_or(Fresh { stamp, since: now })
     }
 
     /// Is done with all that was found.

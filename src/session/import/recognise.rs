@@ -52,7 +52,7 @@ pub(super) fn recognise(
         Some(Kind::Session) => return Some(Recognised::Session),
         Some(Kind::PrintedTable) => return printed::find(text).map(|tables| Recognised::Printed(Box::new(tables))),
         Some(kind @ (Kind::PoseTable | Kind::Profile | Kind::ProfileColumns)) => {
-            let layout = layout(text, &options.given())?;
+            let layout = layout(text, options.given())?;
             let columns = table::columns(&layout, options, notation);
             return Some(Recognised::Table(kind, Box::new(layout), columns));
         }
@@ -75,7 +75,7 @@ pub(super) fn recognise(
     let layout = match &document {
         Some(document) if !document.is_empty() => None,
         // What is no YAML after all may still be a table.
-        _ => layout(text, &options.given()),
+        _ => layout(text, options.given()),
     };
     if let Some(layout) = layout {
         let columns = table::columns(&layout, options, notation);

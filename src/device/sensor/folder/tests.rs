@@ -5,7 +5,7 @@ use tempfile::TempDir;
 use super::*;
 use crate::device::setup::{Endpoint, SensorKind};
 
-const NO_HURRY: Duration = Duration::from_secs(60);
+const NO_HURRY: Duration = Duration::from_mins(1);
 
 struct Bench {
     folder: TempDir,
