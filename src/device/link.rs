@@ -42,11 +42,12 @@ enum Stage {
 pub struct Link {
     stage: Stage,
     num_failures: u32,
+    num_connections: u64,
 }
 
 impl Default for Link {
     fn default() -> Self {
-        Self { stage: Stage::Connecting, num_failures: 0 }
+        Self { stage: Stage::Connecting, num_failures: 0, num_connections: 0 }
     }
 }
 
@@ -59,6 +60,7 @@ impl Link {
     /// The attempt succeeded.
     pub fn on_connected(&mut self, now: Instant) {
         self.stage = Stage::Ready { since: now };
+        self.num_connections += 1;
     }
 
     /// The attempt failed, or the connection broke.
@@ -86,6 +88,12 @@ impl Link {
     #[must_use]
     pub const fn is_ready(&self) -> bool {
         matches!(self.stage, Stage::Ready { .. })
+    }
+
+    /// Tells this connection from those before: what was begun over one does not go on over another.
+    #[must_use]
+    pub const fn num_connections(&self) -> u64 {
+        self.num_connections
     }
 
     /// How it is, as seen at a moment.

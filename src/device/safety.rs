@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::driver::{LinearMove, Readiness};
+use super::search::SearchSettings;
 use crate::geometry::{Base, Flange, Transform, Vec3};
 
 /// Where the flange may be, in the base, mm.
@@ -181,21 +182,22 @@ impl Arming {
         Ok(LinearMove { base_from_flange: *to, speed_mm_s, rotation_speed_deg_s })
     }
 
-    /// A travel from a pose along a direction, both ways: everything that a search may ask for.
+    /// The whole travel of a search from a pose, both ways: everything that it may ask for.
     ///
     /// # Errors
-    /// [`MotionRefusal`] of the first end that is not allowed.
-    pub fn check_travel(
+    /// [`MotionRefusal`] of the first part that is not allowed.
+    pub fn check_search(
         &self,
         readiness: &Readiness,
-        start: &Transform<Base, Flange>,
-        direction_in_base: Vec3,
-        max_travel_mm: f64,
+        first: &Transform<Base, Flange>,
+        search: &SearchSettings,
     ) -> Result<(), MotionRefusal> {
-        // The box is convex, so what is between its points is in it as well.
-        for travel_mm in [max_travel_mm, -max_travel_mm] {
-            let end = shifted(start, direction_in_base * travel_mm);
-            self.check(readiness, start, &end, self.limits.search_speed_mm_s)?;
+        let at = |travel_mm| Transform::from_rigid(search.pose_at(first.rigid(), travel_mm));
+        let (ahead, behind) = (at(search.max_travel_mm), at(-search.max_travel_mm));
+        // The box is convex, so what is between its points is in it as well. The longest single move is that from one end
+        // to the other.
+        for (from, to) in [(first, &ahead), (&ahead, &behind)] {
+            self.check(readiness, from, to, self.limits.search_speed_mm_s)?;
         }
         Ok(())
     }
@@ -233,11 +235,6 @@ pub fn check_readiness(readiness: &Readiness) -> Result<(), MotionRefusal> {
         Readiness::NotReady { found, remedy } => Err(MotionRefusal::NotReady { found: found.clone(), remedy }),
         Readiness::ReadOnly => Err(MotionRefusal::ReadOnly),
     }
-}
-
-/// The same orientation elsewhere.
-pub(super) fn shifted(pose: &Transform<Base, Flange>, by_in_base_mm: Vec3) -> Transform<Base, Flange> {
-    Transform::from_parts(pose.translation_mm() + by_in_base_mm, pose.rotation())
 }
 
 fn is_speed_within(speed: f64, max: f64) -> bool {
@@ -337,10 +334,17 @@ mod tests {
         let workspace = WorkspaceBox { min_mm: [400.0, -20.0, 250.0], max_mm: [600.0, 100.0, 350.0] };
         let arming = arming(MotionLimits { workspace: Some(workspace), ..MotionLimits::default() });
         let start = pose(500.0, 0.0, 300.0);
-        let travel = |max_travel_mm| arming.check_travel(&Readiness::Ready, &start, Vec3::y(), max_travel_mm);
+        let travel = |max_travel_mm| {
+            let search = SearchSettings { max_travel_mm, ..SearchSettings::default() };
+            arming.check_search(&Readiness::Ready, &start, &search)
+        };
         assert_eq!(travel(20.0), Ok(()));
         let refusal = travel(20.5).expect_err("leaves the box on one side");
         assert!(matches!(refusal, MotionRefusal::OutsideWorkspace { axis: 'y', .. }), "{refusal}");
         assert!(travel(f64::NAN).is_err());
+        let short = Arming { limits: MotionLimits { max_move_mm: 30.0, ..MotionLimits::default() }, ..arming };
+        let search = SearchSettings { max_travel_mm: 20.0, ..SearchSettings::default() };
+        let refusal = short.check_search(&Readiness::Ready, &start, &search).expect_err("from end to end is too far");
+        assert!(matches!(refusal, MotionRefusal::TooFar { .. }), "{refusal}");
     }
 }

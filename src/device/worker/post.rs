@@ -188,13 +188,16 @@ impl<Request> Post<Request> {
     }
 
     /// Asks, and waits for the answer until the deadline and a little longer: the thread keeps it, too.
+    ///
+    /// Over any other connection than the one given there is no answer.
     pub fn ask<Answer>(
         &self,
         what: &str,
+        connection: Option<u64>,
         patience: Duration,
         request: impl FnOnce(SyncSender<Result<Answer, DeviceError>>) -> Request,
     ) -> Result<Answer, DeviceError> {
-        self.need_connection()?;
+        self.need_connection(what, connection)?;
         let (sender, receiver): (_, Receiver<Result<Answer, DeviceError>>) = sync_channel(1);
         let timeout =
             || DeviceError::Timeout { device: self.device, request: what.to_owned(), waited: patience };
@@ -212,16 +215,18 @@ impl<Request> Post<Request> {
         match receiver.recv_timeout(patience) {
             Ok(answer) => answer,
             Err(RecvTimeoutError::Timeout) => Err(timeout()),
-            Err(RecvTimeoutError::Disconnected) => Err(match self.need_connection() {
-                Err(error) => error,
-                Ok(()) => DeviceError::Closed { device: self.device, request: what.to_owned() },
-            }),
+            Err(RecvTimeoutError::Disconnected) => Err(self.closed(what)),
         }
     }
 
-    fn need_connection(&self) -> Result<(), DeviceError> {
-        match self.link_state(Instant::now()) {
-            LinkState::Ready => Ok(()),
+    fn need_connection(&self, what: &str, connection: Option<u64>) -> Result<(), DeviceError> {
+        let (state, num_connections) = {
+            let link = lock(&self.link);
+            (link.state(Instant::now()), link.num_connections())
+        };
+        match state {
+            LinkState::Ready if connection.is_none_or(|connection| connection == num_connections) => Ok(()),
+            LinkState::Ready => Err(self.closed(what)),
             LinkState::Failed { error, .. } => Err(error),
             LinkState::Off | LinkState::Connecting => Err(DeviceError::NotReady {
                 device: self.device,
@@ -230,6 +235,14 @@ impl<Request> Post<Request> {
                 remedy: "wait until it is connected",
             }),
         }
+    }
+
+    fn closed(&self, what: &str) -> DeviceError {
+        DeviceError::Closed { device: self.device, request: what.to_owned() }
+    }
+
+    pub fn num_connections(&self) -> u64 {
+        lock(&self.link).num_connections()
     }
 
     /// Ends the thread; waits a little if it is at a request: a robot on the move is to be told to stop.

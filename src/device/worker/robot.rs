@@ -14,6 +14,8 @@ use crate::watch::Wake;
 /// How long after a stop was asked for the driver hears of it, at most, while it moves.
 const MOVE_POLL: Duration = Duration::from_millis(10);
 
+type Robot = dyn RobotDriver;
+
 /// Something to ask of the robot's thread.
 #[derive(Debug)]
 pub enum RobotRequest {
@@ -39,7 +41,7 @@ struct RobotDuty {
 impl RobotDuty {
     fn report(
         &self,
-        driver: &mut dyn RobotDriver,
+        driver: &mut Robot,
         post: &Post<RobotRequest>,
     ) -> Result<RobotReport, DeviceError> {
         let report = driver.report(Instant::now() + self.deadlines.request)?;
@@ -50,7 +52,7 @@ impl RobotDuty {
 
     fn run_move(
         &mut self,
-        driver: &mut dyn RobotDriver,
+        driver: &mut Robot,
         motion: &LinearMove,
         deadline: Instant,
         post: &Post<RobotRequest>,
@@ -87,19 +89,19 @@ impl RobotDuty {
 }
 
 impl Duty for RobotDuty {
-    type Driver = dyn RobotDriver;
+    type Driver = Robot;
     type Request = RobotRequest;
 
     const LOOK_EVERY: Duration = Duration::from_millis(100);
     const DEVICE: &'static str = "Robot";
 
-    fn look(&mut self, driver: &mut dyn RobotDriver, post: &Post<RobotRequest>) -> Result<(), DeviceError> {
+    fn look(&mut self, driver: &mut Robot, post: &Post<RobotRequest>) -> Result<(), DeviceError> {
         self.report(driver, post).map(drop)
     }
 
     fn serve(
         &mut self,
-        driver: &mut dyn RobotDriver,
+        driver: &mut Robot,
         request: RobotRequest,
         post: &Post<RobotRequest>,
     ) -> Result<(), DeviceError> {
@@ -130,7 +132,7 @@ impl Duty for RobotDuty {
         };
     }
 
-    fn stop(&mut self, driver: &mut dyn RobotDriver) -> Result<(), DeviceError> {
+    fn stop(&mut self, driver: &mut Robot) -> Result<(), DeviceError> {
         driver.stop(Instant::now() + self.deadlines.stop)?;
         self.is_moving = false;
         Ok(())
@@ -145,6 +147,8 @@ impl Duty for RobotDuty {
 #[derive(Clone, Debug)]
 pub struct RobotClient {
     post: Arc<Post<RobotRequest>>,
+    /// The only connection that is asked, if it matters.
+    connection: Option<u64>,
     latest: Arc<Mutex<Option<RobotReport>>>,
 }
 
@@ -154,7 +158,7 @@ impl RobotClient {
     /// # Errors
     /// [`DeviceError`].
     pub fn report(&self) -> Result<RobotReport, DeviceError> {
-        self.post.ask("its pose", self.post.deadlines.request * 2, RobotRequest::Report)
+        self.post.ask("its pose", self.connection, self.post.deadlines.request * 2, RobotRequest::Report)
     }
 
     /// Moves, and comes back when the move has ended.
@@ -164,7 +168,7 @@ impl RobotClient {
     pub fn move_to(&self, motion: LinearMove, patience: Duration) -> Result<(), DeviceError> {
         let deadline = Instant::now() + patience;
         let patience = patience + self.post.deadlines.request * 3;
-        self.post.ask("a move", patience, |reply| RobotRequest::Move { motion, deadline, reply })
+        self.post.ask("a move", self.connection, patience, |reply| RobotRequest::Move { motion, deadline, reply })
     }
 
     /// Stops the robot, whatever it does. Comes back at once; the ticket waits.
@@ -176,6 +180,18 @@ impl RobotClient {
     #[must_use]
     pub fn deadlines(&self) -> Deadlines {
         self.post.deadlines
+    }
+
+    /// One that asks over the connection that is there now and over none that may be made later.
+    #[must_use]
+    pub fn of_this_connection(&self) -> Self {
+        Self { connection: Some(self.post.num_connections()), ..self.clone() }
+    }
+
+    /// Tells the connection that is there now from those before.
+    #[must_use]
+    pub fn num_connections(&self) -> u64 {
+        self.post.num_connections()
     }
 
     /// How the connection is.
@@ -211,7 +227,7 @@ impl RobotWorker {
         let latest = Arc::default();
         let duty = RobotDuty { latest: Arc::clone(&latest), deadlines, is_moving: false };
         let hold = start(duty, connect, deadlines, wake);
-        Self { client: RobotClient { post: Arc::clone(&hold.0), latest }, _hold: hold }
+        Self { client: RobotClient { post: Arc::clone(&hold.0), connection: None, latest }, _hold: hold }
     }
 
     /// Whom to ask.

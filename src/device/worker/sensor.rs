@@ -32,6 +32,8 @@ impl LiveProfile {
     }
 }
 
+type Sensor = dyn SensorDriver;
+
 /// Something to ask of the profiler's thread.
 #[derive(Debug)]
 pub enum SensorRequest {
@@ -74,13 +76,13 @@ impl SensorDuty {
 }
 
 impl Duty for SensorDuty {
-    type Driver = dyn SensorDriver;
+    type Driver = Sensor;
     type Request = SensorRequest;
 
     const LOOK_EVERY: Duration = Duration::from_millis(33);
     const DEVICE: &'static str = "Profiler";
 
-    fn look(&mut self, driver: &mut dyn SensorDriver, post: &Post<SensorRequest>) -> Result<(), DeviceError> {
+    fn look(&mut self, driver: &mut Sensor, post: &Post<SensorRequest>) -> Result<(), DeviceError> {
         if let Some(reading) = driver.newest(Instant::now() + self.deadlines.request)? {
             self.show(&reading, post);
         }
@@ -89,7 +91,7 @@ impl Duty for SensorDuty {
 
     fn serve(
         &mut self,
-        driver: &mut dyn SensorDriver,
+        driver: &mut Sensor,
         request: SensorRequest,
         post: &Post<SensorRequest>,
     ) -> Result<(), DeviceError> {
@@ -122,7 +124,7 @@ impl Duty for SensorDuty {
         };
     }
 
-    fn stop(&mut self, _driver: &mut dyn SensorDriver) -> Result<(), DeviceError> {
+    fn stop(&mut self, _driver: &mut Sensor) -> Result<(), DeviceError> {
         Ok(())
     }
 
@@ -154,6 +156,8 @@ impl Rate {
 #[derive(Clone, Debug)]
 pub struct SensorClient {
     post: Arc<Post<SensorRequest>>,
+    /// The only connection that is asked, if it matters.
+    connection: Option<u64>,
     shown: Arc<Mutex<Shown>>,
 }
 
@@ -163,7 +167,7 @@ impl SensorClient {
     /// # Errors
     /// [`DeviceError`].
     pub fn newest(&self) -> Result<Option<ProfileReading>, DeviceError> {
-        self.post.ask("a profile", self.post.deadlines.request * 2, SensorRequest::Newest)
+        self.post.ask("a profile", self.connection, self.post.deadlines.request * 2, SensorRequest::Newest)
     }
 
     /// Forgets what was measured so far, where the device can.
@@ -171,7 +175,7 @@ impl SensorClient {
     /// # Errors
     /// [`DeviceError`].
     pub fn forget(&self) -> Result<(), DeviceError> {
-        self.post.ask("clearing its memory", self.post.deadlines.request * 2, SensorRequest::Forget)
+        self.post.ask("clearing its memory", self.connection, self.post.deadlines.request * 2, SensorRequest::Forget)
     }
 
     /// What to look for in the live profiles; `None`: for nothing.
@@ -184,6 +188,18 @@ impl SensorClient {
                 shown.live = Some(LiveProfile::of(live.reading, ball.as_ref(), live.rate_hz));
             }
         }
+    }
+
+    /// One that asks over the connection that is there now and over none that may be made later.
+    #[must_use]
+    pub fn of_this_connection(&self) -> Self {
+        Self { connection: Some(self.post.num_connections()), ..self.clone() }
+    }
+
+    /// Tells the connection that is there now from those before.
+    #[must_use]
+    pub fn num_connections(&self) -> u64 {
+        self.post.num_connections()
     }
 
     /// How the connection is.
@@ -225,7 +241,7 @@ impl SensorWorker {
         let shown = Arc::default();
         let duty = SensorDuty { shown: Arc::clone(&shown), deadlines, rate: Rate::default() };
         let hold = start(duty, connect, deadlines, wake);
-        Self { client: SensorClient { post: Arc::clone(&hold.0), shown }, _hold: hold }
+        Self { client: SensorClient { post: Arc::clone(&hold.0), connection: None, shown }, _hold: hold }
     }
 
     /// Whom to ask.
