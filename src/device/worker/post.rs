@@ -199,8 +199,7 @@ impl<Request> Post<Request> {
     ) -> Result<Answer, DeviceError> {
         self.need_connection(what, connection)?;
         let (sender, receiver): (_, Receiver<Result<Answer, DeviceError>>) = sync_channel(1);
-        let timeout =
-            || DeviceError::Timeout { device: self.device, request: what.to_owned(), waited: patience };
+        let timeout = || DeviceError::Timeout { device: self.device, request: what.to_owned(), waited: patience };
         {
             let mut inside = lock(&self.board.inside);
             if inside.is_over || inside.is_left {

@@ -39,11 +39,7 @@ struct RobotDuty {
 }
 
 impl RobotDuty {
-    fn report(
-        &self,
-        driver: &mut Robot,
-        post: &Post<RobotRequest>,
-    ) -> Result<RobotReport, DeviceError> {
+    fn report(&self, driver: &mut Robot, post: &Post<RobotRequest>) -> Result<RobotReport, DeviceError> {
         let report = driver.report(Instant::now() + self.deadlines.request)?;
         *lock(&self.latest) = Some(report.clone());
         post.tell();
@@ -78,7 +74,11 @@ impl RobotDuty {
             let now = Instant::now();
             if now >= deadline {
                 let waited = now - start;
-                return Err(DeviceError::Timeout { device: driver.name(), request: "the end of a move".to_owned(), waited });
+                return Err(DeviceError::Timeout {
+                    device: driver.name(),
+                    request: "the end of a move".to_owned(),
+                    waited,
+                });
             }
             if now >= next_look {
                 next_look = now + Self::LOOK_EVERY;

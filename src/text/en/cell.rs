@@ -31,8 +31,7 @@ pub const DOCUMENT_GONE: &str = "the session was closed or replaced, so the robo
 /// A replay has nothing to play.
 pub const NOTHING_TO_REPLAY: &str = "there is nothing to replay: open a session with profiles first";
 /// A rough plan needs to know where the sensor is.
-pub const NO_MOUNTING: &str =
-    "no pose can be proposed yet: say roughly how the sensor is mounted on the flange, or capture a few stations by hand";
+pub const NO_MOUNTING: &str = "no pose can be proposed yet: say roughly how the sensor is mounted on the flange, or capture a few stations by hand";
 /// A rough plan needs to know where the ball is.
 pub const NO_BALL_SEEN: &str =
     "no pose can be proposed yet: bring the laser line onto the ball, so that it is known where it is";

@@ -37,9 +37,8 @@ impl Measuring {
 
     fn station_idx(&self, session: &Session) -> Option<usize> {
         let first = self.first_profile.as_ref()?;
-        let is_first = |capture: &Capture| {
-            matches!(&capture.reading, Reading::Profile(profile) if Arc::ptr_eq(profile, first))
-        };
+        let is_first =
+            |capture: &Capture| matches!(&capture.reading, Reading::Profile(profile) if Arc::ptr_eq(profile, first));
         session.stations.iter().position(|station| station.captures.iter().any(is_first))
     }
 }
@@ -203,7 +202,8 @@ impl Workbench {
 
     /// Captures that show no ball, or one that moved, take no part until somebody has looked.
     fn leave_out(&mut self, measuring: &Measuring) {
-        let Some(document) = self.document.as_ref().filter(|document| measuring.document_id == Some(document.id)) else {
+        let Some(document) = self.document.as_ref().filter(|document| measuring.document_id == Some(document.id))
+        else {
             return;
         };
         let Some(station_idx) = measuring.station_idx(&document.session) else { return };

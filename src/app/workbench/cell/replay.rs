@@ -71,9 +71,10 @@ impl Workbench {
             return;
         }
         let has_profile = |capture: &Capture| matches!(capture.reading, Reading::Profile(_));
-        let document = self.document.as_ref().filter(|document| {
-            document.session.stations.iter().flat_map(|station| &station.captures).any(has_profile)
-        });
+        let document = self
+            .document
+            .as_ref()
+            .filter(|document| document.session.stations.iter().flat_map(|station| &station.captures).any(has_profile));
         let Some(document) = document else {
             self.notify(NoticeKind::Error, words::NOTHING_TO_REPLAY.to_owned());
             return;
