@@ -1,5 +1,9 @@
 //! Robots, one folder a protocol: its messages, and the driver that does the I/O.
 
+pub mod curpos;
+pub mod mappdk;
+pub mod ur;
+
 use std::time::Instant;
 
 use super::driver::RobotDriver;

@@ -1,0 +1,3 @@
+//! FANUC by the MAPPDK server: text commands on 18735, the same on 18736 for looking on while a move is under way.
+
+pub mod messages;
