@@ -1,0 +1,1 @@
+//! Any robot by the text bridge.
