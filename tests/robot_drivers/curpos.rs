@@ -82,7 +82,7 @@ fn pages_without_a_pose_are_refused_by_name() {
     let is_unexpected = |error: &DeviceError| matches!(error, DeviceError::Unexpected { .. });
     let page = |text: &str| Act::Send(Response { status: 200, body: text.as_bytes().to_vec() }.encode());
     let cases = [
-        ("".to_owned(), "Group #: 1"),
+        (String::new(), "Group #: 1"),
         (PAGE.replace("CURRENT WORLD POSITION", "CURRENT OTHER POSITION"), "CURRENT WORLD POSITION"),
         (PAGE.replace("Tool #:  7", "Tool: ?"), "Tool #"),
         (PAGE.replace("Z:   -140.50", "Z:   ********"), "Z: and a number"),
@@ -107,7 +107,8 @@ fn broken_servers_end_in_a_named_error_by_the_deadline() {
     expect_error(connect_to(Act::SendAndClose(Vec::new())), |error| is_unexpected(error) || is_closed(error));
     expect_error(connect_to(Act::Send(b"0:success".to_vec())), is_unexpected);
     expect_error(connect_to(Act::Send(long)), is_unexpected);
-    expect_error(connect_to(Act::Send([&b"HTTP/1.0 200 OK\r\n\r\n"[..], &[b'x'; 300_000]].concat())), is_unexpected);
+    let endless = format!("HTTP/1.0 200 OK\r\n\r\n{}", "x".repeat(300_000)).into_bytes();
+    expect_error(connect_to(Act::Send(endless)), is_unexpected);
     for (status, words) in [(401, "unlock"), (404, "address"), (500, "browser")] {
         let act = Act::Send(Response { status, body: Vec::new() }.encode());
         let error = expect_error(connect_to(act), |error| matches!(error, DeviceError::Refused { .. }));

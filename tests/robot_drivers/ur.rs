@@ -279,7 +279,8 @@ fn a_program_that_ends_early_is_refused_with_a_reason() {
 
 #[test]
 fn states_without_motion_are_named_with_a_remedy() {
-    let cases: [(fn(&mut State), &str, &str); 6] = [
+    type Case = (fn(&mut State), &'static str, &'static str);
+    let cases: [Case; 6] = [
         (|state| state.is_remote = Some(false), "local control", "remote control"),
         (|state| state.robot_mode = 3, "power off", "switch the arm on"),
         (|state| state.robot_mode = 5, "idle", "brakes"),
