@@ -20,6 +20,8 @@
 
 pub mod driver;
 pub mod error;
+#[cfg(test)]
+mod fake;
 pub mod link;
 pub mod robot;
 pub mod routine;

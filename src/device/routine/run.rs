@@ -171,7 +171,7 @@ impl Runner {
     }
 
     fn stop_robot(&self) -> Option<bool> {
-        self.robot.stop().wait()
+        self.robot.stop_and_wait()
     }
 
     pub(super) fn tell(&self, event: RoutineEvent) {

@@ -79,9 +79,7 @@ impl Workbench {
         proposal.turn_deg = from.rotation().angle_to(&to.rotation()).to_degrees();
         proposal.refusal = match self.arming() {
             None => Some(MotionRefusal::NotArmed),
-            Some(arming) => {
-                arming.check(&report.readiness, from, to, arming.limits.transit_speed_mm_s).err()
-            }
+            Some(arming) => arming.check(&report.readiness, from, to, arming.limits.transit_speed_mm_s).err(),
         };
     }
 
@@ -145,9 +143,11 @@ impl Workbench {
         let base_from_sensor = |pose: &Transform<Base, Flange>| pose.rigid() * flange_from_sensor;
         #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 stations")]
         let scale = 1.0 / seen.len() as f64;
-        let ball_in_base_mm =
-            seen.iter().map(|(pose, centre)| (base_from_sensor(pose) * nalgebra::Point3::from(*centre)).coords).sum::<Vec3>()
-                * scale;
+        let ball_in_base_mm = seen
+            .iter()
+            .map(|(pose, centre)| (base_from_sensor(pose) * nalgebra::Point3::from(*centre)).coords)
+            .sum::<Vec3>()
+            * scale;
         let standoff_mm = seen.iter().map(|(_, centre)| centre.z).sum::<f64>() * scale;
         let cell = RoughCell {
             mount: session.mount,
@@ -176,7 +176,8 @@ impl Workbench {
         let centre = |arc: &ArcFit| Vec3::new(arc.circle.x_mm, 0.0, arc.circle.z_mm);
         let mut found = Vec::new();
         if let (Some(document), Some(results)) = (&self.document, &self.results) {
-            for (station_idx, station) in document.session.stations.iter().enumerate().filter(|(_, station)| station.enabled)
+            for (station_idx, station) in
+                document.session.stations.iter().enumerate().filter(|(_, station)| station.enabled)
             {
                 let arcs = station.captures.iter().enumerate().filter_map(|(capture_idx, capture)| {
                     match results.measured.reading(station_idx, capture_idx) {
@@ -205,4 +206,3 @@ fn rigid(mounting: &RoughMounting) -> Rigid {
     let rotation = nalgebra::UnitQuaternion::new_normalize(nalgebra::Quaternion::new(w, i, j, k));
     Rigid::from_parts(Vec3::from(mounting.translation_mm).into(), rotation)
 }
-

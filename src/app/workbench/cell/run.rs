@@ -93,7 +93,8 @@ impl Workbench {
         let is_complete = num_done >= run.num_stations;
         self.show_run();
         match end {
-            RoutineEnd::Failed { error, .. } => self.end_run(Some(error.to_string())),
+            // What happened is in the notice before.
+            RoutineEnd::Failed { .. } => self.end_run(Some(words::DEVICE_FAILED.to_owned())),
             RoutineEnd::Stopped { .. } => self.end_run(Some(words::STOPPED.to_owned())),
             RoutineEnd::NotAllowed(refusal) => self.end_run(Some(refusal.to_string())),
             _ if is_complete => {
@@ -153,8 +154,9 @@ impl Workbench {
         if !is_paused && run.stage != Stage::Measuring && self.cell.view.proposal.is_none() {
             run.stage = Stage::Between;
         }
-        if let Some(measuring) = &self.cell.measuring {
-            measuring.routine.control().pause(is_paused);
+        match &self.cell.measuring {
+            Some(measuring) => measuring.routine.control().pause(is_paused),
+            None => self.cell.view.activity = Activity::Idle,
         }
         self.show_run();
     }
