@@ -4,6 +4,7 @@
 //! yields poses with profiles, and the floor above makes captures of them.
 //!
 //! - [`driver`]: what a robot and a profiler can be asked, whatever their make; [`robot`] and [`sensor`] hold the makes.
+//! - [`bridge`]: the text bridge by which any other robot or profiler can be connected.
 //! - [`setup`]: which driver at which address.
 //! - [`link`]: the state of a connection, with its back-off; pure.
 //! - [`safety`]: which motion is allowed; pure.
@@ -18,6 +19,7 @@
 //! allocated. A closed connection is an error. There is one outstanding request a connection. Each message type has a pure
 //! `encode` and `parse`; one place does the I/O.
 
+pub mod bridge;
 pub mod driver;
 pub mod error;
 #[cfg(test)]
