@@ -7,6 +7,7 @@ use super::error::DeviceError;
 use super::setup::{SensorKind, SensorSetup};
 
 pub mod average;
+pub mod folder;
 pub mod ljv;
 
 /// Connects to a profiler and asks it once who it is.
@@ -16,6 +17,7 @@ pub mod ljv;
 pub fn connect(setup: &SensorSetup, deadline: Instant) -> Result<Box<dyn SensorDriver>, DeviceError> {
     match setup.kind {
         SensorKind::KeyenceLjv => Ok(Box::new(ljv::driver::LjvDriver::connect(setup, deadline)?)),
-        SensorKind::Bridge | SensorKind::Folder => Err(DeviceError::Stopped { device: "Sensor" }),
+        SensorKind::Folder => Ok(Box::new(folder::FolderDriver::connect(setup, deadline)?)),
+        SensorKind::Bridge => Err(DeviceError::Stopped { device: "Sensor" }),
     }
 }
