@@ -54,10 +54,9 @@ pub fn serve(world: &World, connection: &mut Connection) {
             let rest = received.split_off(len);
             let packet = std::mem::replace(&mut received, rest);
             let Ok(packet) = ClientPacket::parse(&packet) else { return };
-            for reply in answer(world, packet, &mut recipes, &mut is_started) {
-                if !connection.send(&reply.encode()) {
-                    return;
-                }
+            let reply = answer(world, packet, &mut recipes, &mut is_started);
+            if reply.is_some_and(|reply| !connection.send(&reply.encode())) {
+                return;
             }
         }
     }
