@@ -1,4 +1,4 @@
-//! Step 5: what is wrong and what mends it, how sure the result is, and where to measure next.
+//! Step 6: what is wrong and what mends it, how sure the result is, and where to measure next.
 
 mod accuracy;
 mod bars;
