@@ -15,7 +15,7 @@
 //! | 4 | [`device`], [`diagnose`], [`simulate`] | robots and sensors, the search for the largest arc, the simulated cell · what is wrong with a session, and its remedies · simulated sessions |
 //! | 3 | [`session`], [`plan`] | the document: model, edits, history, table, file format, imports, checks, measuring · where to measure next |
 //! | 2 | [`calibrate`] | hand-eye methods, least squares on SE(3), uncertainty, validation |
-//! | 1 | [`fit`], [`scene`] | circle fits and the extraction of arcs · what a laser line sees |
+//! | 1 | [`fit`], [`scene`], `sheet` | circle fits and the extraction of arcs · what a laser line sees · numbers in text of any origin |
 //! | 0 | [`geometry`], [`watch`] | frames, rotations, conventions, profile, statistics · progress and cancel |
 //!
 //! # Invariants
@@ -34,6 +34,7 @@ pub mod plan;
 pub mod report;
 pub mod scene;
 pub mod session;
+mod sheet;
 pub mod simulate;
 pub mod text;
 pub mod ui;

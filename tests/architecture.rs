@@ -5,11 +5,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// A module may name only floors below its own.
-const FLOORS: [(&str, u8); 15] = [
+const FLOORS: [(&str, u8); 16] = [
     ("geometry", 0),
     ("watch", 0),
     ("fit", 1),
     ("scene", 1),
+    ("sheet", 1),
     ("calibrate", 2),
     ("plan", 3),
     ("session", 3),

@@ -89,6 +89,14 @@ pub enum DeviceError {
         /// How far from the target, µm.
         distance_um: u32,
     },
+    /// The robot stopped turned otherwise than it was sent.
+    #[error("{device}: stopped turned by {turn_deg:.3}° against the target of the move; clear what holds it up and look at its alarms", turn_deg = f64::from(*turn_mdeg) / 1000.0)]
+    NotTurned {
+        /// The device's name.
+        device: &'static str,
+        /// By how much, thousandths of a degree.
+        turn_mdeg: u32,
+    },
     /// Somebody pressed stop.
     #[error("{device}: stopped on request")]
     Stopped {
@@ -105,4 +113,69 @@ pub enum DeviceError {
         /// What the system said.
         reason: String,
     },
+}
+
+impl DeviceError {
+    /// Whether the device may be asked further over the same connection.
+    #[must_use]
+    pub const fn leaves_connection_usable(&self) -> bool {
+        matches!(
+            self,
+            Self::Refused { .. }
+                | Self::NotReady { .. }
+                | Self::CannotMove { .. }
+                | Self::NotArrived { .. }
+                | Self::NotTurned { .. }
+                | Self::Stopped { .. }
+        )
+    }
+
+    /// Whether the same attempt may succeed later although nobody has done anything about it.
+    #[must_use]
+    pub const fn may_pass_by_itself(&self) -> bool {
+        !matches!(self, Self::Refused { .. } | Self::NotReady { .. } | Self::CannotMove { .. })
+    }
+}
+
+/// What a message holds that its protocol does not allow. Parsers are pure and know no device: a driver makes a
+/// [`DeviceError::Unexpected`] of it.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("found {found}, needed {expected}")]
+pub struct MessageError {
+    /// What came.
+    pub found: String,
+    /// What should have come.
+    pub expected: String,
+}
+
+impl MessageError {
+    /// From the bytes that were found; long ones are cut.
+    pub fn new(found: impl AsRef<[u8]>, expected: impl Into<String>) -> Self {
+        Self { found: excerpt(found), expected: expected.into() }
+    }
+
+    /// The same as the answer of a device to a request.
+    #[must_use]
+    pub fn of(self, device: &'static str, request: &str, remedy: &'static str) -> DeviceError {
+        DeviceError::Unexpected {
+            device,
+            request: request.to_owned(),
+            found: self.found,
+            expected: self.expected,
+            remedy,
+        }
+    }
+}
+
+/// Bytes from a wire as a short text that can be shown: quoted, escaped, cut.
+#[must_use]
+pub fn excerpt(bytes: impl AsRef<[u8]>) -> String {
+    /// As much as fits a line beside the rest of a sentence.
+    const MAX_SHOWN: usize = 60;
+    let bytes = bytes.as_ref();
+    match bytes.len() {
+        0 => "nothing".to_owned(),
+        len if len > MAX_SHOWN => format!("\"{}\"… ({len} bytes)", bytes[..MAX_SHOWN].escape_ascii()),
+        _ => format!("\"{}\"", bytes.escape_ascii()),
+    }
 }

@@ -4,13 +4,20 @@ use std::time::Instant;
 
 use super::driver::SensorDriver;
 use super::error::DeviceError;
-use super::setup::SensorSetup;
+use super::setup::{SensorKind, SensorSetup};
+
+pub mod average;
+pub mod folder;
+pub mod ljv;
 
 /// Connects to a profiler and asks it once who it is.
 ///
 /// # Errors
 /// [`DeviceError`].
 pub fn connect(setup: &SensorSetup, deadline: Instant) -> Result<Box<dyn SensorDriver>, DeviceError> {
-    let _ = (setup, deadline);
-    Err(DeviceError::Stopped { device: "Sensor" })
+    match setup.kind {
+        SensorKind::KeyenceLjv => Ok(Box::new(ljv::driver::LjvDriver::connect(setup, deadline)?)),
+        SensorKind::Folder => Ok(Box::new(folder::FolderDriver::connect(setup, deadline)?)),
+        SensorKind::Bridge => Err(DeviceError::Stopped { device: "Sensor" }),
+    }
 }

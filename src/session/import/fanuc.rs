@@ -2,13 +2,13 @@
 
 use crate::geometry::PoseNotation;
 use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
+use crate::sheet::text::number;
 use crate::watch::Cancelled;
 
 use super::gather::{Gathered, OwnFrames, RawPose};
 use super::program::{Frames, Unknown, head, show};
 use super::read::Progress;
 use super::scan::Scanner;
-use super::text::number;
 use super::{Preview, Source, program};
 
 const COORDINATES: [&str; 6] = ["X", "Y", "Z", "W", "P", "R"];

@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::sheet::natural_key;
+
 use super::{ImportError, Source};
 
 /// No file of poses or of a profile is as large.
@@ -85,19 +87,4 @@ fn list(folder: &Path, root: &Path, depth: usize, files: &mut Vec<(PathBuf, Stri
         }
     }
     Ok(())
-}
-
-/// Sorts `p2` before `p10`: text and numbers in turn.
-pub(super) fn natural_key(name: &str) -> Vec<(String, Option<u64>)> {
-    let mut key = Vec::new();
-    let mut rest = name;
-    while !rest.is_empty() {
-        let digits_at = rest.find(|c: char| c.is_ascii_digit()).unwrap_or(rest.len());
-        let (text, after) = rest.split_at(digits_at);
-        let digits_end = after.find(|c: char| !c.is_ascii_digit()).unwrap_or(after.len());
-        let (digits, after) = after.split_at(digits_end);
-        key.push((text.to_lowercase(), digits.parse().ok()));
-        rest = after;
-    }
-    key
 }

@@ -12,8 +12,8 @@ use crate::geometry::{Base, Flange, PoseNotation, Profile, Tcp, Transform, Vec3}
 use crate::session::edit::written_angles;
 use crate::session::limits::{self, Quantity};
 use crate::session::{Capture, Reading, Station};
+use crate::sheet::text::{excerpt, is_missing};
 
-use super::text::{excerpt, is_missing};
 use super::{MAX_PROBLEMS, Note, Problem};
 
 /// Poses that are read; a session of more is a mistake.

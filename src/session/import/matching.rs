@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::sync::Arc;
 
 use crate::session::{Reading, Station};
+use crate::sheet::natural_key;
 
-use super::folder::natural_key;
 use super::gather::ProfileKey;
 use super::profiles::NamedProfile;
 

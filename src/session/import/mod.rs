@@ -17,7 +17,6 @@ mod read;
 mod recognise;
 mod scan;
 mod table;
-mod text;
 mod ur;
 mod yaml;
 
@@ -27,8 +26,11 @@ use thiserror::Error;
 
 use crate::geometry::PoseNotation;
 use crate::session::{Edit, EditRefusal, Published, Session, Station, Target};
+use crate::sheet::layout::Given;
+use crate::sheet::text::decode;
 use crate::watch::{Cancelled, Watch};
 
+pub use crate::sheet::Separator;
 pub use folder::{MAX_FILE_BYTES, MAX_FILES, MAX_TOTAL_BYTES};
 pub use gather::MAX_POSES;
 
@@ -45,7 +47,7 @@ impl Source {
     /// From the bytes of a file, in whatever encoding they are.
     #[must_use]
     pub fn from_bytes(name: String, bytes: Vec<u8>) -> Self {
-        Self { name, text: text::decode(bytes) }
+        Self { name, text: decode(bytes) }
     }
 }
 
@@ -97,19 +99,6 @@ pub enum Role {
     Profile,
 }
 
-/// What separates the cells of a table.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Separator {
-    /// `,`
-    Comma,
-    /// `;`
-    Semicolon,
-    /// A tabulator.
-    Tab,
-    /// Any number of blanks.
-    Blanks,
-}
-
 /// What can be set in the preview; `None` is left to recognition.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ImportOptions {
@@ -131,6 +120,13 @@ pub struct ImportOptions {
     pub profile_length_unit: Option<crate::geometry::notation::LengthUnit>,
     /// Whether z of the profiles points the other way.
     pub is_z_mirrored: bool,
+}
+
+impl ImportOptions {
+    /// What they say of a sheet.
+    const fn given(&self) -> Given {
+        Given { separator: self.separator, has_decimal_comma: self.decimal_comma, has_header: self.has_header }
+    }
 }
 
 /// One source and what it gave.

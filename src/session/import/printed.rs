@@ -6,9 +6,9 @@ use std::borrow::Cow;
 use crate::geometry::notation::{LengthUnit, OrientationForm};
 use crate::geometry::{PoseNotation, Vec3};
 use crate::session::Published;
+use crate::sheet::text::{excerpt, half_width, lines, number};
 
 use super::gather::{Gathered, RawPose};
-use super::text::{excerpt, half_width, lines, number};
 use super::{Note, Preview, Role, Source};
 
 /// Without a value for so many lines, what follows is another table.

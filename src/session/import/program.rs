@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
 use crate::geometry::{Base, Flange, PoseConvention, PoseNotation, Tcp, Transform, Vec3};
+use crate::sheet::text::excerpt;
 
 use super::gather::Gathered;
 use super::{Note, Preview, Role};
@@ -127,7 +128,7 @@ pub(super) fn head(preview: &mut Preview, notation: &PoseNotation) {
 pub(super) fn show(preview: &mut Preview, line: usize, label: &str, numbers: &[f64]) {
     preview.num_rows += 1;
     if preview.rows.len() < MAX_PREVIEW_ROWS {
-        let cells = std::iter::once(super::text::excerpt(label).into_owned());
+        let cells = std::iter::once(excerpt(label).into_owned());
         preview.rows.push((line, cells.chain(numbers.iter().map(f64::to_string)).collect()));
     }
 }

@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use crate::geometry::PoseNotation;
 use crate::session::{Edit, EditRefusal, Reading, parse};
+use crate::sheet::text::{excerpt, without_mark};
 use crate::watch::{Cancelled, Watch};
 
 use super::gather::Gathered;
 use super::profiles::{self, NamedProfile};
 use super::recognise::{Recognised, recognise};
-use super::text::{excerpt, without_mark};
 use super::{
     ImportError, ImportOptions, Imported, Kind, Note, Part, Preview, Source, abb, fanuc, kuka, matching, printed,
     table, ur,

@@ -1,9 +1,11 @@
 //! What a source is: by its content first, by the ending of its name where that leaves it open.
 
 use crate::geometry::PoseNotation;
+use crate::sheet::layout::{Layout, layout};
+use crate::sheet::profile::named;
 
-use super::table::{self, Columns, Layout};
-use super::{ImportOptions, Kind, Role, abb, fanuc, kuka, printed, profiles, ur, yaml};
+use super::table::{self, Columns};
+use super::{ImportOptions, Kind, Role, abb, fanuc, kuka, printed, ur, yaml};
 
 /// What was found on the way and is needed for reading.
 pub(super) enum Recognised {
@@ -50,7 +52,7 @@ pub(super) fn recognise(
         Some(Kind::Session) => return Some(Recognised::Session),
         Some(Kind::PrintedTable) => return printed::find(text).map(|tables| Recognised::Printed(Box::new(tables))),
         Some(kind @ (Kind::PoseTable | Kind::Profile | Kind::ProfileColumns)) => {
-            let layout = table::layout(text, options)?;
+            let layout = layout(text, options.given())?;
             let columns = table::columns(&layout, options, notation);
             return Some(Recognised::Table(kind, Box::new(layout), columns));
         }
@@ -73,7 +75,7 @@ pub(super) fn recognise(
     let layout = match &document {
         Some(document) if !document.is_empty() => None,
         // What is no YAML after all may still be a table.
-        _ => table::layout(text, options),
+        _ => layout(text, options.given()),
     };
     if let Some(layout) = layout {
         let columns = table::columns(&layout, options, notation);
@@ -104,7 +106,7 @@ fn table_kind(layout: &Layout, columns: &Columns) -> Kind {
         return Kind::PoseTable;
     }
     // A header that names x and z says that they are one profile, whatever stands beside them.
-    if profiles::named(layout, "x").is_some() && profiles::named(layout, "z").is_some() && !is_pose {
+    if named(layout, "x").is_some() && named(layout, "z").is_some() && !is_pose {
         let names_an_orientation = columns.roles.iter().any(|role| matches!(role, Role::Orientation(_)));
         if !names_an_orientation && is_along_a_line(layout) {
             return Kind::Profile;
@@ -112,9 +114,7 @@ fn table_kind(layout: &Layout, columns: &Columns) -> Kind {
     }
     match layout.num_columns {
         ..=2 => Kind::Profile,
-        _ if profiles::named(layout, "x") == Some(0) && profiles::named(layout, "z").is_none() && !is_pose => {
-            Kind::ProfileColumns
-        }
+        _ if named(layout, "x") == Some(0) && named(layout, "z").is_none() && !is_pose => Kind::ProfileColumns,
         3 if !is_along_a_line(layout) || is_numbered_or_flat(layout) => Kind::Profile,
         3 => Kind::ProfileColumns,
         _ if is_along_a_line(layout) => Kind::ProfileColumns,

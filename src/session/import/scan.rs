@@ -1,6 +1,6 @@
 //! Reading along a robot program: words, numbers and brackets, with line and column.
 
-use super::text::number;
+use crate::sheet::text::number;
 
 /// A place in a program's text.
 #[derive(Clone, Debug)]

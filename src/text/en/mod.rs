@@ -3,6 +3,7 @@
 pub mod arcs;
 pub mod capture;
 pub mod capture_settings;
+pub mod cell;
 pub mod check;
 pub mod cli;
 pub mod compare;

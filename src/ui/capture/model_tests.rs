@@ -32,7 +32,7 @@ fn live(has_arc: bool) -> LiveProfile {
     let x_mm: Vec<f64> = (-60..=60_i16).map(|idx| f64::from(idx) * 0.1).collect();
     let z_mm: Vec<_> = x_mm.iter().map(|x| Some(80.0 - (144.0 - x * x).sqrt())).collect();
     let profile = Arc::new(Profile::new(x_mm, &z_mm).expect("valid"));
-    let arc = extract_arc(&profile, 15.0, &ArcOptions::default()).expect("an arc");
+    let arc = extract_arc(&profile, &ArcOptions { ball_radius_mm: 15.0, profile_std_mm: None }).expect("an arc");
     let arc = if has_arc { Ok(Arc::new(arc)) } else { Err(ArcRefusal::TooFewPoints { found: 2, needed: 20 }) };
     let reading = ProfileReading { profile, trigger_count: 1, received_at: Instant::now() };
     LiveProfile { reading, arc, rate_hz: 30.0 }

@@ -2,9 +2,9 @@
 
 use saphyr_parser::{Event, Parser, ScalarStyle};
 
-use super::flow;
+use crate::sheet::text::{excerpt, is_missing, number};
 
-use crate::session::import::text::{excerpt, is_missing, number};
+use super::flow;
 
 /// Deeper structures hold no poses.
 const MAX_DEPTH: usize = 16;

@@ -13,7 +13,7 @@ const MAX_QUOTED_LINE_ENDS: usize = 4;
 ///
 /// Numbers and separators are ASCII in every encoding of the last kind (Latin-1, GBK, …), so poses are read from it all the
 /// same; other characters become `�`.
-pub(super) fn decode(bytes: Vec<u8>) -> String {
+pub fn decode(bytes: Vec<u8>) -> String {
     match bytes.as_slice() {
         [0xff, 0xfe, rest @ ..] => utf_16(rest, u16::from_le_bytes),
         [0xfe, 0xff, rest @ ..] => utf_16(rest, u16::from_be_bytes),
@@ -28,12 +28,12 @@ fn utf_16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> String {
 }
 
 /// Text without a byte order mark.
-pub(super) fn without_mark(text: &str) -> &str {
+pub fn without_mark(text: &str) -> &str {
     text.strip_prefix('\u{feff}').unwrap_or(text)
 }
 
 /// The lines of a text with their numbers from 1, whatever ends them: LF, CR LF or CR.
-pub(super) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
+pub fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let mut rest = Some(text);
     let mut number = 0;
     std::iter::from_fn(move || {
@@ -58,7 +58,7 @@ fn split_line(text: &str) -> (&str, &str) {
 
 /// A row of a table: a line, or several where a quoted cell runs over its end.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Record<'t> {
+pub struct Record<'t> {
     /// Line of its beginning, from 1.
     pub line: usize,
     /// Its text.
@@ -66,7 +66,7 @@ pub(super) struct Record<'t> {
 }
 
 /// The records of a text, without blank lines.
-pub(super) fn records(text: &str) -> impl Iterator<Item = Record<'_>> {
+pub fn records(text: &str) -> impl Iterator<Item = Record<'_>> {
     let mut rest = text;
     let mut next_line = 1;
     std::iter::from_fn(move || {
@@ -107,7 +107,7 @@ fn split_record(text: &str) -> (&str, &str, usize) {
 
 /// A cell of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Cell<'t> {
+pub struct Cell<'t> {
     /// Its text, without quotation marks and blanks around it.
     pub text: &'t str,
     /// Where it begins, in bytes of the record.
@@ -122,7 +122,7 @@ impl Cell<'_> {
 }
 
 /// Splits a record into cells; a row of a Markdown table at its bars, whatever the separator.
-pub(super) fn split<'t>(record: &'t str, separator: Separator, cells: &mut Vec<Cell<'t>>) {
+pub fn split<'t>(record: &'t str, separator: Separator, cells: &mut Vec<Cell<'t>>) {
     cells.clear();
     let trimmed = record.trim();
     if trimmed.len() > 1 && trimmed.starts_with('|') {
@@ -163,14 +163,14 @@ fn split_at<'t>(text: &'t str, offset: usize, is_separator: impl Fn(char) -> boo
 }
 
 /// Whether a cell says that there is no value.
-pub(super) fn is_missing(text: &str) -> bool {
+pub fn is_missing(text: &str) -> bool {
     const WORDS: [&str; 9] = ["", "-", "--", "---", "nan", "null", "none", "n/a", "invalid"];
     WORDS.iter().any(|word| text.eq_ignore_ascii_case(word))
 }
 
 /// Reads a number. Full-width characters, a true minus, thin blanks, a unit behind it and a blank behind the point, as text
 /// recognition leaves it, are understood; NaN and infinity are not numbers.
-pub(super) fn number(text: &str, has_decimal_comma: bool) -> Option<f64> {
+pub fn number(text: &str, has_decimal_comma: bool) -> Option<f64> {
     let starts_as_number =
         |text: &str| text.trim_start_matches(['+', '-']).starts_with(|c: char| c.is_ascii_digit() || c == '.');
     if let Ok(number) = text.parse::<f64>() {
@@ -219,7 +219,7 @@ fn plain(text: &str) -> Option<String> {
 }
 
 /// A character without its full width, and a true minus as the hyphen that programs read.
-pub(super) const fn half_width(c: char) -> char {
+pub const fn half_width(c: char) -> char {
     match c {
         '\u{ff01}'..='\u{ff5e}' => match char::from_u32(c as u32 - FULL_WIDTH_OFFSET) {
             Some(half) => half,
@@ -232,7 +232,7 @@ pub(super) const fn half_width(c: char) -> char {
 }
 
 /// As much of a text as a message shows, on one line.
-pub(super) fn excerpt(text: &str) -> Cow<'_, str> {
+pub fn excerpt(text: &str) -> Cow<'_, str> {
     const MAX_CHARS: usize = 40;
     if text.len() <= MAX_CHARS && !text.chars().any(char::is_control) {
         return Cow::Borrowed(text);
