@@ -147,6 +147,8 @@ pub fn again_in(wait: Duration) -> String {
 /// A broken link that only a person can mend.
 pub const NOT_AGAIN: &str = "Mend it, then connect again.";
 
+/// In place of the lamp during a replay.
+pub const RECORDED: &str = "recorded";
 /// What the controller says of its readiness, in a few words.
 #[must_use]
 pub fn readiness(readiness: &Readiness) -> &str {
@@ -223,8 +225,8 @@ pub fn rate(rate_hz: &str) -> String {
 }
 /// The arc in words, above the plot.
 #[must_use]
-pub fn arc(radius: &str, x: &str, z: &str, point_std_um: &str) -> String {
-    format!("l = {radius} mm, centre x {x} mm, z {z} mm, point noise {point_std_um} µm")
+pub fn arc(radius: &str, angle_deg: &str, point_std_um: &str) -> String {
+    format!("l = {radius} mm   arc of {angle_deg}°   point noise {point_std_um} µm")
 }
 /// Name of the profile without an arc.
 pub const NO_ARC: &str = "no arc";
@@ -332,15 +334,10 @@ pub const FORGET_NAME: &str = "Forget the proposal";
 pub fn way(distance_mm: &str, turn_deg: &str) -> String {
     format!("{distance_mm} mm away, turn {turn_deg}°")
 }
-/// The orientation of a proposal.
+/// Name of the small picture: the flange's axes now and there, seen in the base.
 #[must_use]
-pub fn tilt(tilt_deg: &str, azimuth_deg: &str, spin_deg: &str) -> String {
-    format!("tilt {tilt_deg}° towards {azimuth_deg}°, spin {spin_deg}°")
-}
-/// Name of the small picture.
-#[must_use]
-pub fn picture(tilt: &str) -> String {
-    format!("Picture of the orientation: {tilt}")
+pub fn picture(tilt_deg: &str, azimuth_deg: &str, spin_deg: &str) -> String {
+    format!("The flange's axes now (faint) and there: tilt {tilt_deg}° towards {azimuth_deg}°, spin {spin_deg}°")
 }
 /// Why nothing can be proposed.
 pub const NEEDS_MOUNTING: &str =

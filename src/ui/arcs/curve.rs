@@ -14,6 +14,8 @@ use super::profile::rule;
 
 /// The part of the height that the curve takes; its residuals get the rest.
 const CURVE_PART: f32 = 0.62;
+/// The least travel in view, mm.
+const LEAST_STEPS_MM: f64 = 1.0;
 /// Radius of a step's mark, points.
 const STEP_RADIUS: f32 = 3.2;
 /// Half the width of the published stop's label with some room, points.
@@ -139,6 +141,11 @@ fn curve_extent(shown: &Curve<'_>, ball_radius_mm: f64) -> Extent {
     }
     if let Some(stop_mm) = shown.published_stop_mm {
         extent.include(stop_mm, ball_radius_mm);
+    }
+    // A search that has just begun: the line that it climbs to is in view, and a step has some width.
+    extent.include(extent.x[0], ball_radius_mm);
+    if steps < LEAST_STEPS_MM {
+        extent.include(extent.x[0] + LEAST_STEPS_MM, ball_radius_mm);
     }
     // Room for the label above the line l = R, and for the published stop below the curve.
     let height = (extent.y[1] - extent.y[0]).max(ball_radius_mm * 1e-3);

@@ -49,10 +49,16 @@ fn small_button(ui: &mut Ui, label: &str, name: &str) -> Response {
 fn robot(ui: &mut Ui, desk: &mut Desk<'_>) {
     let cell = desk.view.cell;
     let (shape, word, remedy) = model::robot_lamp(cell);
+    // What is replayed is shown as if it came from a robot.
+    let is_replay = cell.replay.is_some();
     let is_off = cell.robot.state == LinkState::Off;
     let is_practice = cell.is_practice;
     let mut command = None;
     let right = |ui: &mut Ui| {
+        if is_replay {
+            ui.label(theme::dim(ui, words::RECORDED));
+            return;
+        }
         if !is_off && !is_practice && small_button(ui, words::DISCONNECT, words::DISCONNECT_ROBOT).clicked() {
             command = Some(CellCommand::DisconnectRobot);
         }
@@ -60,12 +66,12 @@ fn robot(ui: &mut Ui, desk: &mut Desk<'_>) {
     };
     card(ui, words::ROBOT, right, |ui| {
         inside(ui, |ui| {
-            if let Some(remedy) = &remedy {
+            if let Some(remedy) = remedy.as_ref().filter(|_| !is_replay) {
                 let palette = theme::palette(ui);
                 let color = if shape == model::Lamp::Bad { palette.bad } else { palette.warn };
                 remark(ui, "!", remedy, color);
             }
-            if is_off {
+            if is_off && !is_replay {
                 robot_form(ui, desk);
             } else {
                 robot_state(ui, desk);
@@ -98,7 +104,7 @@ fn robot_form(ui: &mut Ui, desk: &mut Desk<'_>) {
 fn robot_state(ui: &mut Ui, desk: &Desk<'_>) {
     let cell = desk.view.cell;
     ui.spacing_mut().item_spacing.y = 0.0;
-    if let Some(setup) = &cell.robot.setup {
+    if let Some(setup) = cell.robot.setup.as_ref().filter(|_| cell.replay.is_none()) {
         hint(ui, &words::at_address(words::robot_kind(setup.kind), &setup.endpoint.host, setup.endpoint.port));
         if setup.kind == RobotKind::FanucPage {
             remark(ui, "!", words::COARSE_POSES, theme::palette(ui).warn);
@@ -107,6 +113,9 @@ fn robot_state(ui: &mut Ui, desk: &Desk<'_>) {
     let Some(report) = &cell.robot.latest else { return };
     ui.add_space(4.0);
     pose(ui, &model::pose_rows(&desk.view.notation(), &report.base_from_flange, report.resolution_mm));
+    if cell.replay.is_some() {
+        return;
+    }
     value_row(ui, words::MOTION, words::motion(report.is_moving));
     let color = match report.readiness {
         Readiness::NotReady { .. } => theme::palette(ui).warn,
@@ -133,10 +142,15 @@ fn pose(ui: &mut Ui, rows: &[(String, String)]) {
 fn profiler(ui: &mut Ui, desk: &mut Desk<'_>) {
     let cell = desk.view.cell;
     let (shape, word, remedy) = model::sensor_lamp(cell);
+    let is_replay = cell.replay.is_some();
     let is_off = cell.sensor.state == LinkState::Off;
     let is_practice = cell.is_practice;
     let mut command = None;
     let right = |ui: &mut Ui| {
+        if is_replay {
+            ui.label(theme::dim(ui, words::RECORDED));
+            return;
+        }
         if !is_off && !is_practice && small_button(ui, words::DISCONNECT, words::DISCONNECT_PROFILER).clicked() {
             command = Some(CellCommand::DisconnectSensor);
         }
@@ -144,15 +158,15 @@ fn profiler(ui: &mut Ui, desk: &mut Desk<'_>) {
     };
     card(ui, words::PROFILER, right, |ui| {
         inside(ui, |ui| {
-            if let Some(remedy) = &remedy {
+            if let Some(remedy) = remedy.as_ref().filter(|_| !is_replay) {
                 remark(ui, "!", remedy, theme::palette(ui).bad);
             }
-            if is_off {
+            if is_off && !is_replay {
                 profiler_form(ui, desk);
                 return;
             }
             ui.spacing_mut().item_spacing.y = 0.0;
-            if let Some(setup) = &cell.sensor.setup {
+            if let Some(setup) = cell.sensor.setup.as_ref().filter(|_| !is_replay) {
                 let kind = words::sensor_kind(setup.kind);
                 hint(
                     ui,

@@ -72,17 +72,16 @@ fn live_card(ui: &mut Ui, height: f32, desk: &mut Desk<'_>) {
     }
 }
 
-/// Radius, centre and noise, in the line above the plot.
+/// Radius, angle and noise, in the line above the plot; the centre stands in it.
 fn arc_line(ui: &mut Ui, live: &LiveProfile) {
     egui::Frame::new().inner_margin(egui::Margin { left: 12, right: 12, top: 6, bottom: 0 }).show(ui, |ui| {
         let palette = theme::palette(ui);
         let (line, color) = match &live.arc {
             Ok(arc) => {
-                let [std_x, std_z, std_radius] = arc.std_mm();
-                let circle = arc.circle;
-                let radius = with_std(circle.radius_mm, std_radius);
-                let (x, z) = (with_std(circle.x_mm, std_x), with_std(circle.z_mm, std_z));
-                (words::arc(&radius, &x, &z, &fixed(arc.point_std_mm * 1000.0, 1)), palette.text)
+                let std_mm = arc.std_mm();
+                let radius = with_std(arc.circle.radius_mm, std_mm[2]);
+                let angle_deg = fixed(arc.angle_rad.to_degrees(), 0);
+                (words::arc(&radius, &angle_deg, &fixed(arc.point_std_mm * 1000.0, 1)), palette.text)
             }
             Err(_) => (format!("! {}", words::NO_ARC), palette.warn),
         };

@@ -64,8 +64,7 @@ fn paint(ui: &mut Ui, row: Rect, states: [BoxState; 6]) {
     let palette = theme::palette(ui);
     let stroke = Stroke::new(1.2, palette.text_dim);
     let arrow = |from: Pos2, to: Pos2| charts::arrow(ui.painter(), from, to, stroke);
-    for (idx, pair) in rects.windows(2).enumerate() {
-        let _ = idx;
+    for pair in rects.windows(2) {
         arrow(pair[0].right_center() + vec2(3.0, 0.0), pair[1].left_center() - vec2(3.0, 0.0));
     }
     // R₂ > R₁: past the reversing box, along its upper side.

@@ -7,6 +7,7 @@ mod machine;
 pub mod memory;
 pub mod model;
 pub mod mounting;
+mod orientation;
 mod panel;
 mod settings;
 mod strip;

@@ -6,7 +6,7 @@ use crate::calibrate::SweepPoint;
 use crate::device::search::SearchPoint;
 use crate::device::{LinkState, Readiness, RobotReport, SearchPhase, SearchReport};
 use crate::geometry::{Base, Flange, PoseNotation, Transform};
-use crate::session::{Reading, Session, Target};
+use crate::session::{Reading, Session};
 use crate::text::capture as words;
 use crate::text::capture_settings::problem;
 use crate::ui::arcs::model::{Peak, ball_radius_mm};
@@ -77,10 +77,10 @@ pub fn is_running(cell: &CellView) -> bool {
     cell.is_busy() || cell.run.is_some_and(|run| run.is_paused || run.is_asking)
 }
 
-/// Whether a run has measured or given up all of its stations.
+/// Whether a run has measured all that it was to.
 #[must_use]
 pub fn is_run_over(cell: &CellView) -> bool {
-    !is_running(cell) && cell.run.is_some_and(|run| run.num_done + run.num_failed >= run.num_stations)
+    !is_running(cell) && cell.run.is_some_and(|run| run.num_done >= run.num_stations)
 }
 
 /// Something that a button of the panel asks for.
@@ -126,7 +126,7 @@ pub fn next(view: &View<'_>, memory: &CellMemory) -> Next {
     if let Some(next) = next_while_running(view).or_else(|| next_connection(view, memory)) {
         return next;
     }
-    if is_run_over(cell) {
+    if is_run_over(cell) && cell.proposal.is_none() {
         return Next::offer(words::now::COMPARE, words::COMPARE, Deed::Compare);
     }
     let Some(radius_mm) = view.ball_radius_mm() else {
@@ -377,8 +377,11 @@ pub fn pose_rows(
         .collect()
 }
 
-/// Decimals that a number in steps of `resolution` has.
+/// Decimals that a number in steps of `resolution` has; three where that is not known, as for recorded poses.
 fn decimals_of(resolution: f64) -> usize {
+    if resolution <= 0.0 {
+        return 3;
+    }
     let mut decimals = 0;
     let mut step = 1.0;
     while decimals < 6 && step > resolution * 1.5 {
@@ -515,12 +518,6 @@ pub fn problems(settings: &CellSettings, ball_radius_mm: f64, robot: Option<&Rob
         check(!is_empty && is_outside, problem::OUTSIDE_BOX);
     }
     found
-}
-
-/// The target of a new session in the panel.
-#[must_use]
-pub fn ball(radius_mm: f64) -> Target {
-    Target::ball(radius_mm)
 }
 
 /// A view that follows what comes 30 times a second without trembling: it stays while it holds what is to be seen and

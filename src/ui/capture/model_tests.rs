@@ -109,9 +109,11 @@ fn from_nothing_to_a_compared_result_there_is_one_way() {
     assert_eq!(deed(&armed(ready.clone()), Some(&sample()), &known), Some(Deed::ShowMounting));
     let start = CellCommand::StartRun { num_stations: 8 };
     assert_eq!(deed(&armed(mounted(ready.clone())), Some(&empty), &known), command(start));
+    let given_up = CellView { run: Some(RunView { num_failed: 3, ..RUN }), ..armed(mounted(ready.clone())) };
+    assert_eq!(deed(&given_up, Some(&empty), &known), command(CellCommand::StartRun { num_stations: 8 }));
     let running = CellView { run: Some(RUN), activity: Activity::Moving, ..armed(mounted(ready.clone())) };
     assert_eq!(deed(&running, Some(&empty), &known), None);
-    let over = CellView { run: Some(RunView { num_done: 7, num_failed: 1, ..RUN }), ..armed(mounted(ready)) };
+    let over = CellView { run: Some(RunView { num_done: 8, num_failed: 1, ..RUN }), ..armed(mounted(ready)) };
     assert_eq!(deed(&over, Some(&sample()), &known), Some(Deed::Compare));
 }
 

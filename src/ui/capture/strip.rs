@@ -119,8 +119,6 @@ fn next(ui: &mut Ui, desk: &mut Desk<'_>) {
             let field = DragValue::new(radius).range(0.5..=500.0).speed(0.1).max_decimals(4).prefix("R ").suffix(" mm");
             number(ui, words::BALL_RADIUS, words::BALL_RADIUS_HINT, field);
         }
-    } else if model::is_running(desk.view.cell) {
-        ui.spinner();
     }
     let is_failed = model::lamp(&desk.view.cell.robot.state).0 == Lamp::Bad
         || model::lamp(&desk.view.cell.sensor.state).0 == Lamp::Bad;

@@ -3,6 +3,7 @@
 use egui::{Align, DragValue, Frame, Label, Layout, Margin, ProgressBar, RichText, Ui, UiBuilder, vec2};
 
 use crate::app::cell::{CellCommand, Proposal, StationRoutine};
+use crate::device::RoutineEnd;
 use crate::text::capture as words;
 use crate::ui::theme;
 use crate::ui::widgets::{card_with_height, fixed};
@@ -10,10 +11,13 @@ use crate::ui::widgets::{card_with_height, fixed};
 use super::connection::pose_line;
 use super::fields::{hint, number_row, remark, tall_button};
 use super::model::{self, refusal};
+use super::orientation;
 use super::panel::Desk;
 
 /// Height of each card, points.
 const HEIGHT: f32 = 212.0;
+/// Side of the picture of an orientation, points.
+const PICTURE_SIZE: f32 = 104.0;
 /// From this width on the cards stand side by side.
 const SIDE_BY_SIDE_FROM: f32 = 800.0;
 
@@ -78,14 +82,16 @@ fn station(ui: &mut Ui, desk: &mut Desk<'_>) {
                         CellCommand::CaptureStation,
                     );
                 });
+                hint(ui, &words::num_stations(num_stations));
                 match &desk.view.cell.last_end {
-                    Some(end) if !model::is_running(desk.view.cell) => {
+                    // How a search ended stands below its boxes.
+                    Some(end) if !matches!(end, RoutineEnd::Searched(_)) => {
                         let (is_well, sentence) = words::routine_end(end);
                         let palette = theme::palette(ui);
                         let (mark, color) = if is_well { ("✔", palette.good) } else { ("!", palette.warn) };
                         remark(ui, mark, &sentence, color);
                     }
-                    _ => hint(ui, &words::num_stations(num_stations)),
+                    _ => {}
                 }
             });
         },
@@ -103,7 +109,12 @@ fn proposal(ui: &mut Ui, desk: &mut Desk<'_>) {
         ask(ui, desk, words::PROPOSE, words::PROPOSE_NAME, "", CellCommand::ProposeStation);
         return;
     };
-    proposed(ui, desk, proposal);
+    let area = ui.available_rect_before_wrap().with_max_y(ui.cursor().top() + PICTURE_SIZE);
+    let (left, right) = area.split_left_right_at_x(area.right() - PICTURE_SIZE);
+    let mut beside = ui.new_child(UiBuilder::new().max_rect(left));
+    proposed(&mut beside, desk, proposal);
+    orientation::show(ui, right, &desk.view, proposal);
+    ui.advance_cursor_after_rect(area);
     ui.horizontal(|ui| {
         let refused = proposal.refusal.as_ref().map(ToString::to_string);
         let reason = refused.as_deref().or_else(|| refusal(&desk.view, &CellCommand::AcceptProposal));
@@ -119,11 +130,10 @@ fn proposed(ui: &mut Ui, desk: &Desk<'_>, proposal: &Proposal) {
     /// A planned pose need not be reached more exactly.
     const RESOLUTION_MM: f64 = 0.1;
     let station = &proposal.station;
-    let tilt = words::tilt(&fixed(station.tilt_deg, 0), &fixed(station.azimuth_deg, 0), &fixed(station.spin_deg, 0));
     ui.spacing_mut().item_spacing.y = 2.0;
     pose_line(ui, &model::pose_rows(&desk.view.notation(), &station.base_from_flange, RESOLUTION_MM));
     let way = words::way(&fixed(proposal.distance_mm, 0), &fixed(proposal.turn_deg, 0));
-    ui.label(theme::dim(ui, format!("{tilt}; {way}")));
+    ui.label(theme::dim(ui, way));
     match &proposal.refusal {
         Some(refusal) => {
             let color = theme::palette(ui).bad;
@@ -185,7 +195,8 @@ fn run_under_way(ui: &mut Ui, desk: &mut Desk<'_>) {
     let Some(run) = desk.view.cell.run else { return };
     let part = f32::from(run.num_done + run.num_failed) / f32::from(run.num_stations.max(1));
     ui.label(theme::strong(words::run_progress(run.num_done, run.num_stations, run.num_failed)));
-    ui.add(ProgressBar::new(part).desired_height(8.0));
+    let accent = theme::palette(ui).accent;
+    ui.add(ProgressBar::new(part).desired_height(8.0).fill(accent));
     let state = match (run.is_asking, run.is_paused) {
         (true, _) => words::RUN_ASKS,
         (_, true) => words::RUN_PAUSED,

@@ -8,7 +8,7 @@ mod panel;
 mod plan;
 mod plots;
 mod readings;
-mod triad;
+pub mod triad;
 mod validation;
 
 pub use model::{Seen, Shown, View};

@@ -45,10 +45,16 @@ impl Shell {
         }
     }
 
-    /// Keeps what is set for the next run; what is set for the simulated cell is not for a real one.
+    /// Keeps what is set for the next run. What is set for the simulated cell is not for a real one: when practice ends,
+    /// the settings are again what they were before.
     pub(super) fn remember_cell(&mut self) {
         let cell = self.workbench.cell();
-        if !cell.is_practice {
+        let is_practice = cell.is_practice;
+        let has_ended = std::mem::replace(&mut self.was_practice, is_practice) && !is_practice;
+        if has_ended {
+            let settings = Box::new(self.persisted.cell.settings);
+            self.workbench.apply(Command::Cell(Box::new(CellCommand::SetSettings(settings))));
+        } else if !is_practice {
             self.persisted.cell.settings = cell.settings;
         }
     }

@@ -67,6 +67,8 @@ pub struct Shell {
     poses: PosesState,
     arcs: ArcsState,
     capture: CaptureState,
+    /// Whether the cell was the simulated one in the last frame.
+    was_practice: bool,
     compare: CompareState,
     diagnosis: DiagnosisState,
     import: ImportState,
@@ -115,6 +117,7 @@ impl Shell {
             poses: PosesState::default(),
             arcs: ArcsState::default(),
             capture: CaptureState::default(),
+            was_practice: false,
             compare: CompareState::default(),
             diagnosis: DiagnosisState::default(),
             import: ImportState::default(),
