@@ -24,6 +24,7 @@ pub(super) struct Measuring {
     /// All captures of the station are one step of undo.
     gesture: u64,
     label: String,
+    go_to: Option<Transform<Base, Flange>>,
     /// The first profile: it tells the station from others, whatever it is called and wherever it is moved.
     first_profile: Option<Arc<Profile>>,
     num_captures: usize,
@@ -96,6 +97,7 @@ impl Workbench {
             document_id: Some(document.id),
             gesture: new_gesture(),
             label,
+            go_to,
             first_profile: None,
             num_captures: 0,
         });
@@ -195,6 +197,9 @@ impl Workbench {
         }
         if let RoutineEnd::Searched(SearchEnd::NoArcAtStart { .. } | SearchEnd::ResidualGrew { .. }) = end {
             self.leave_out(&measuring);
+        }
+        if let (Some(pose), false) = (measuring.go_to, end.is_success()) {
+            self.avoid(pose);
         }
         self.cell.view.last_end = Some(end.clone());
         self.go_on_after(end);
