@@ -82,19 +82,13 @@ pub enum DeviceError {
         device: &'static str,
     },
     /// The robot stopped somewhere else than it was sent.
-    #[error("{device}: stopped {distance_mm:.3} mm from the target of the move; clear what holds it up and look at its alarms", distance_mm = f64::from(*distance_um) / 1000.0)]
+    #[error("{device}: stopped {distance_mm:.3} mm and {turn_deg:.3}° from the target of the move; clear what holds it up and look at its alarms", distance_mm = f64::from(*distance_um) / 1000.0, turn_deg = f64::from(*turn_mdeg) / 1000.0)]
     NotArrived {
         /// The device's name.
         device: &'static str,
         /// How far from the target, µm.
         distance_um: u32,
-    },
-    /// The robot stopped turned otherwise than it was sent.
-    #[error("{device}: stopped turned by {turn_deg:.3}° against the target of the move; clear what holds it up and look at its alarms", turn_deg = f64::from(*turn_mdeg) / 1000.0)]
-    NotTurned {
-        /// The device's name.
-        device: &'static str,
-        /// By how much, thousandths of a degree.
+        /// How far turned against it, thousandths of a degree.
         turn_mdeg: u32,
     },
     /// Somebody pressed stop.

@@ -11,7 +11,7 @@ pub use dirt::Dirt;
 pub use random::Random;
 
 /// Steeper than this, no light comes back to the sensor.
-const MAX_INCIDENCE_DEG: f64 = 75.0;
+pub const MAX_INCIDENCE_DEG: f64 = 75.0;
 /// From here on steep flanks are measured too high where [`Dirt::has_flank_bias`] is on.
 const BIASED_INCIDENCE_DEG: f64 = 50.0;
 /// The bias at the steepest flank that is still seen, mm.
@@ -51,12 +51,21 @@ pub struct Scene {
     pub decimals: Option<u8>,
 }
 
-/// One point of the line before noise.
-#[derive(Clone, Copy)]
-struct Hit {
-    z_mm: f64,
-    /// Angle between the surface's normal and the range axis, degrees; `None` off the ball.
-    incidence_deg: Option<f64>,
+/// What a line along the range axis meets first, before noise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Surface {
+    /// The ball.
+    Ball {
+        /// Where along the range axis, mm.
+        z_mm: f64,
+        /// How far from the ball's middle towards the sensor, mm.
+        height_mm: f64,
+    },
+    /// The table.
+    Table {
+        /// Where along the range axis, mm.
+        z_mm: f64,
+    },
 }
 
 impl Scene {
@@ -76,8 +85,7 @@ impl Scene {
             .map(|x| {
                 // Drawn for every point, so that what one point hits does not shift the noise of the next.
                 let error_mm = self.profile_std_mm * noise.normal();
-                let hit = self.hit(*x, ball_in_sensor, world_from_sensor)?;
-                Some(hit.z_mm + self.flank_bias_mm(hit) + error_mm)
+                Some(self.seen_z_mm(*x, ball_in_sensor, world_from_sensor)? + error_mm)
             })
             .collect();
         if self.dirt.has_spikes {
@@ -98,25 +106,30 @@ impl Scene {
         (part - 0.5) * WIDTH_RADII * self.radius_mm
     }
 
-    /// Where the ray at `x` along the range axis first meets something.
-    fn hit(&self, x: f64, ball_in_sensor: Vec3, world_from_sensor: &Rigid) -> Option<Hit> {
+    /// What the line at `x` along the range axis meets first; the table counts whether the profiles show it or not.
+    #[must_use]
+    pub fn surface_at(&self, x: f64, ball_in_sensor: Vec3, world_from_sensor: &Rigid) -> Option<Surface> {
         let dx = x - ball_in_sensor.x;
         let height_squared = self.radius_mm * self.radius_mm - ball_in_sensor.y * ball_in_sensor.y - dx * dx;
         if height_squared > 0.0 {
             // The ball stands above the table, so it is met first; of its two sides, the one towards the sensor.
-            let height = height_squared.sqrt();
-            let incidence_deg = (height / self.radius_mm).acos().to_degrees();
-            return (incidence_deg <= MAX_INCIDENCE_DEG).then(|| Hit {
-                z_mm: ball_in_sensor.z - self.range_sign * height,
-                incidence_deg: Some(incidence_deg),
-            });
+            let height_mm = height_squared.sqrt();
+            return Some(Surface::Ball { z_mm: ball_in_sensor.z - self.range_sign * height_mm, height_mm });
         }
-        if !self.dirt.has_table {
-            return None;
+        self.table_z_mm(x, world_from_sensor).map(|z_mm| Surface::Table { z_mm })
+    }
+
+    /// What parallel rays along the range axis see of it.
+    fn seen_z_mm(&self, x: f64, ball_in_sensor: Vec3, world_from_sensor: &Rigid) -> Option<f64> {
+        match self.surface_at(x, ball_in_sensor, world_from_sensor)? {
+            Surface::Ball { z_mm, height_mm } => {
+                let incidence_deg = (height_mm / self.radius_mm).acos().to_degrees();
+                (incidence_deg <= MAX_INCIDENCE_DEG).then(|| z_mm + self.flank_bias_mm(incidence_deg))
+            }
+            Surface::Table { z_mm } => (self.dirt.has_table
+                && (z_mm - ball_in_sensor.z).abs() <= HALF_RANGE_RADII * self.radius_mm)
+                .then_some(z_mm),
         }
-        let z_mm = self.table_z_mm(x, world_from_sensor)?;
-        ((z_mm - ball_in_sensor.z).abs() <= HALF_RANGE_RADII * self.radius_mm)
-            .then_some(Hit { z_mm, incidence_deg: None })
     }
 
     fn table_z_mm(&self, x: f64, world_from_sensor: &Rigid) -> Option<f64> {
@@ -128,10 +141,9 @@ impl Scene {
     }
 
     /// Steep flanks are seen nearer to the sensor than they are: the light that comes back is that of the upper edge.
-    fn flank_bias_mm(&self, hit: Hit) -> f64 {
-        let steepness = hit.incidence_deg.map_or(0.0, |incidence_deg| {
-            ((incidence_deg - BIASED_INCIDENCE_DEG) / (MAX_INCIDENCE_DEG - BIASED_INCIDENCE_DEG)).clamp(0.0, 1.0)
-        });
+    fn flank_bias_mm(&self, incidence_deg: f64) -> f64 {
+        let steepness =
+            ((incidence_deg - BIASED_INCIDENCE_DEG) / (MAX_INCIDENCE_DEG - BIASED_INCIDENCE_DEG)).clamp(0.0, 1.0);
         if self.dirt.has_flank_bias { -self.range_sign * FLANK_BIAS_MM * steepness * steepness } else { 0.0 }
     }
 

@@ -27,6 +27,11 @@ impl Random {
         (self.0.next_u64() >> 11) as f64 * SCALE
     }
 
+    /// Any byte.
+    pub fn byte(&mut self) -> u8 {
+        self.0.next_u64().to_le_bytes()[0]
+    }
+
     /// Uniform in [-1, 1).
     pub fn signed_unit(&mut self) -> f64 {
         2.0 * self.unit() - 1.0

@@ -1,9 +1,31 @@
 //! A simulated cell that serves the real protocols on loopback: for practice, and for tests.
+//!
+//! An arm with its real reach ([`chain`], [`motion`]), a profiler with its real field of view ([`head`]) and a ball on a post
+//! stand in one [`world`]; [`server`] answers for them in the messages of the drivers, over [`net`]. [`fault`] says what goes
+//! wrong on request. What is not simulated: collisions, the arm's dynamics, the optics beyond what is hidden or too flat.
+
+pub mod chain;
+pub mod fault;
+pub mod head;
+pub mod layout;
+pub mod motion;
+mod net;
+mod ports;
+mod server;
+mod world;
+
+use std::path::PathBuf;
 
 use crate::geometry::{Rigid, Vec3};
 
 use super::error::DeviceError;
-use super::setup::{RobotKind, RobotSetup, SensorKind, SensorSetup};
+use super::setup::{Endpoint, RobotKind, RobotSetup, SensorKind, SensorSetup};
+
+pub use fault::{Fault, FaultSpec, FaultStart, SimDevice};
+pub use head::Head;
+
+use net::Servers;
+use world::World;
 
 /// What to simulate.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,8 +38,16 @@ pub struct SimOptions {
     pub port_offset: Option<u16>,
     /// Of all that is random.
     pub seed: u64,
-    /// How much faster than real time the robot moves: 1 for practice, more for tests.
+    /// How much faster than real time the cell's clock runs, for motions and profiles alike: 1 for practice, more for tests.
     pub time_scale: f64,
+    /// The profiler's head.
+    pub head: Head,
+    /// Radius of the ball, mm.
+    pub radius_mm: f64,
+    /// Whether poses and profiles have noise, and profiles lost points.
+    pub is_noisy: bool,
+    /// What goes wrong.
+    pub faults: Vec<FaultSpec>,
 }
 
 impl Default for SimOptions {
@@ -28,6 +58,10 @@ impl Default for SimOptions {
             port_offset: None,
             seed: 1,
             time_scale: 1.0,
+            head: Head::default(),
+            radius_mm: 15.0,
+            is_noisy: true,
+            faults: Vec::new(),
         }
     }
 }
@@ -35,7 +69,7 @@ impl Default for SimOptions {
 /// What is true in a simulated cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SimTruth {
-    /// The calibration.
+    /// The calibration, for profiles whose z grows away from the sensor and is 0 at the reference distance.
     pub flange_from_sensor: Rigid,
     /// The ball's centre, mm.
     pub ball_in_base: Vec3,
@@ -60,15 +94,82 @@ pub struct SimCell {
     pub sensor_setup: SensorSetup,
     /// What is true in it.
     pub truth: SimTruth,
+    /// The ports that are served, with what for.
+    pub ports: Vec<(u16, &'static str)>,
+    servers: Servers,
 }
 
 impl SimCell {
     /// Starts its servers, on loopback only.
     ///
     /// # Errors
-    /// [`DeviceError::System`] if a port is taken.
+    /// [`DeviceError::System`] if a port is taken, or the options are none of a cell.
     pub fn start(options: &SimOptions) -> Result<Self, DeviceError> {
-        let _ = options;
-        Err(DeviceError::Stopped { device: "Simulated cell" })
+        check(options)?;
+        let bound = ports::bind_all(options)?;
+        let mut servers = Servers::new(World::new(options));
+        let mut served = Vec::new();
+        let [mut robot_port, mut sensor_port] = [0; 2];
+        for (port, listener, plan) in bound {
+            if plan.is_main {
+                *(if plan.device == SimDevice::Robot { &mut robot_port } else { &mut sensor_port }) = port;
+            }
+            served.push((port, plan.what));
+            servers.serve(listener, plan.device, plan.clients, plan.service).map_err(|error| DeviceError::System {
+                device: DEVICE,
+                what: "starting a thread".to_owned(),
+                reason: error.to_string(),
+            })?;
+        }
+        let here = |port| Endpoint { host: "127.0.0.1".to_owned(), port };
+        Ok(Self {
+            robot_setup: RobotSetup { kind: options.robot, endpoint: here(robot_port) },
+            sensor_setup: SensorSetup {
+                kind: options.sensor,
+                endpoint: here(sensor_port),
+                folder: PathBuf::new(),
+                // On the LJ-V's wire z grows towards the head.
+                is_z_inverted: options.sensor == SensorKind::KeyenceLjv,
+            },
+            truth: servers.world().truth(),
+            ports: served,
+            servers,
+        })
     }
+
+    /// One more fault, its counts from now on.
+    pub fn inject(&self, fault: FaultSpec) {
+        self.servers.world().inject(fault);
+    }
+
+    /// Ends all faults; a ball that was pushed is back in its place.
+    pub fn clear_faults(&self) {
+        self.servers.world().clear_faults();
+    }
+}
+
+/// What messages call it.
+const DEVICE: &str = "Simulated cell";
+/// Radii of balls that a cell has room for, mm.
+const RADIUS_MM: [f64; 2] = [2.0, 60.0];
+/// How much faster or slower than real time a cell may run.
+const TIME_SCALE: [f64; 2] = [0.01, 1e4];
+
+fn check(options: &SimOptions) -> Result<(), DeviceError> {
+    let within = |what: &str, found: f64, [min, max]: [f64; 2]| {
+        if (min..=max).contains(&found) {
+            Ok(())
+        } else {
+            let reason = format!("found {found}, needed {min} to {max}");
+            Err(DeviceError::System { device: DEVICE, what: what.to_owned(), reason })
+        }
+    };
+    within("a ball of this radius in mm", options.radius_mm, RADIUS_MM)?;
+    within("a clock of this speed", options.time_scale, TIME_SCALE)?;
+    if options.sensor == SensorKind::Folder {
+        let what = "serving a watched folder".to_owned();
+        let reason = "it has no protocol; choose the LJ-V7000 or the bridge".to_owned();
+        return Err(DeviceError::System { device: DEVICE, what, reason });
+    }
+    Ok(())
 }

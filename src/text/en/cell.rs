@@ -37,6 +37,8 @@ pub const NO_BALL_SEEN: &str =
     "no pose can be proposed yet: bring the laser line onto the ball, so that it is known where it is";
 /// Why a run ended.
 pub const STOPPED: &str = "it was stopped";
+/// Why a run ended.
+pub const DEVICE_FAILED: &str = "a device failed. See to it, arm again, and start a new run";
 /// A recorded capture is a point already.
 pub const NO_PROFILE: &str = "the capture holds no profile";
 /// There is no proposal (any more).

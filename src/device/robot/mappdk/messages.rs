@@ -297,9 +297,9 @@ pub fn completeness(command: &Command, bytes: &[u8]) -> Result<Completeness, Mes
     }
     let is_whole = match command {
         Command::CurPos => {
-            let num_equals = message.iter().filter(|byte| **byte == b'=').count();
+            let num_fields = message.split(|byte| *byte == b'=').count() - 1;
             let decimals = message.rsplit(|byte| *byte == b'.').next().unwrap_or_default();
-            num_equals == 6 && decimals.len() == 3 && decimals.iter().all(u8::is_ascii_digit)
+            num_fields == 6 && decimals.len() == 3 && decimals.iter().all(u8::is_ascii_digit)
         }
         Command::MoveJ(_) | Command::MoveP(_) | Command::MappdkCall(_) | Command::SetSysVar(..) | Command::Exit => {
             message == SUCCESS.as_bytes()
@@ -467,9 +467,13 @@ mod tests {
 
     #[test]
     fn poses_survive_wpr_at_the_half_turn_and_in_gimbal_lock() {
-        for angles in
-            [[180.0, 0.0, 0.0], [-180.0, 0.0, 180.0], [179.9999999, 0.0, -30.0], [20.0, 90.0, 50.0], [0.0, -90.0, 1.0]]
-        {
+        for angles in [
+            [180.0, 0.0, 0.0],
+            [-180.0, 0.0, 180.0],
+            [179.999_999_9, 0.0, -30.0],
+            [20.0, 90.0, 50.0],
+            [0.0, -90.0, 1.0],
+        ] {
             let pose = Xyzwpr([1.0, 2.0, 3.0, angles[0], angles[1], angles[2]]).pose();
             let again = Xyzwpr::from_pose(&pose).pose();
             assert!(pose.rotation().angle_to(&again.rotation()) < 1e-7, "{angles:?}");

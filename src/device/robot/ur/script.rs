@@ -185,12 +185,13 @@ impl Program {
     /// The text as it is sent.
     #[must_use]
     pub fn encode(&self) -> String {
-        let statements = self.statements.iter().map(Statement::encode);
+        let lines = self.statements.iter().map(Statement::encode);
         if self.name.is_empty() {
-            statements.map(|line| line + "\n").collect()
+            lines.map(|line| line + "\n").collect()
         } else {
-            let body: String = statements.map(|line| format!("  {line}\n")).collect();
-            format!("def {}():\n{body}end\n", self.name)
+            let head = format!("def {}():", self.name);
+            let body = lines.map(|line| "  ".to_owned() + &line);
+            [head].into_iter().chain(body).chain(["end\n".to_owned()]).collect::<Vec<_>>().join("\n")
         }
     }
 

@@ -1,0 +1,273 @@
+//! Drives a robot of Universal Robots.
+
+use std::time::{Duration, Instant};
+
+use crate::device::driver::{LinearMove, MoveState, Readiness, RobotDriver, RobotReport};
+use crate::device::error::DeviceError;
+use crate::device::robot::arrival::check_arrival;
+use crate::device::setup::Endpoint;
+use crate::device::wire::Wire;
+use crate::geometry::{Base, Flange, Transform};
+
+use super::dashboard::{self, Question};
+use super::script::{Program, Statement, UrPose};
+use super::state::{MARK_REGISTER, UrState};
+use super::stream::Stream;
+
+/// What errors call it.
+pub(super) const DEVICE: &str = "Universal Robots";
+
+/// Doubles, and joint encoders of some micrometres at the tool point.
+const RESOLUTION_MM: f64 = 0.001;
+/// Gentle, so that a head on a bracket does not swing.
+const ACCELERATION_M_S2: f64 = 0.3;
+/// Firm: 100 mm/s end within 5 mm.
+const STOP_DECELERATION_M_S2: f64 = 1.0;
+/// A ramp up and a ramp down make the fastest moment at most twice the mean.
+const PEAK_OVER_MEAN: f64 = 2.0;
+/// A program that has not begun after this is not going to: the controller takes none, or not from here.
+const START_GRACE: Duration = Duration::from_secs(2);
+/// The switch between local and remote control is looked at so often.
+const REMOTE_AGE: Duration = Duration::from_secs(1);
+
+/// How far the other ports are from that of RTDE (30004): secondary interface 30002, realtime 30003, dashboard 29999.
+const BELOW_RTDE_SECONDARY: u16 = 2;
+const BELOW_RTDE_REALTIME: u16 = 1;
+const BELOW_RTDE_DASHBOARD: u16 = 5;
+
+/// A robot of Universal Robots.
+#[derive(Debug)]
+pub struct UrRobot {
+    endpoint: Endpoint,
+    stream: Stream,
+    dashboard: Option<Dashboard>,
+    motion: Option<Underway>,
+    last_mark: i32,
+}
+
+/// A program under way.
+#[derive(Debug)]
+struct Underway {
+    script: Wire,
+    target: Transform<Base, Flange>,
+    sent_at: Instant,
+    has_played: bool,
+}
+
+/// The dashboard, and what it said last.
+#[derive(Debug)]
+struct Dashboard {
+    wire: Wire,
+    is_remote: Option<bool>,
+    asked_at: Instant,
+}
+
+impl UrRobot {
+    /// Connects to the stream, and to the dashboard if it answers.
+    ///
+    /// # Errors
+    /// [`DeviceError`].
+    pub fn connect(endpoint: &Endpoint, deadline: Instant) -> Result<Self, DeviceError> {
+        let mut stream = Stream::connect(endpoint, deadline)?;
+        let state = stream.newest(deadline)?;
+        // It is of use and not needed: half of the time that is left is enough to try.
+        let half_way = Instant::now() + deadline.saturating_duration_since(Instant::now()) / 2;
+        let dashboard = Dashboard::connect(&below(endpoint, BELOW_RTDE_DASHBOARD), half_way).ok();
+        Ok(Self { endpoint: endpoint.clone(), stream, dashboard, motion: None, last_mark: state.mark })
+    }
+
+    fn readiness(&mut self, state: &UrState, deadline: Instant) -> Readiness {
+        if let Some(dashboard) = &mut self.dashboard
+            && dashboard.asked_at.elapsed() >= REMOTE_AGE
+            && dashboard.ask(deadline).is_err()
+        {
+            self.dashboard = None;
+        }
+        state.readiness(self.dashboard.as_ref().and_then(|dashboard| dashboard.is_remote))
+    }
+
+    /// Sends a program that does this and then writes the next mark.
+    fn run(
+        &mut self,
+        script: &mut Wire,
+        name: &str,
+        statement: Statement,
+        deadline: Instant,
+    ) -> Result<(), DeviceError> {
+        self.last_mark = self.last_mark.checked_add(1).unwrap_or(1);
+        let mark = Statement::WriteOutputInteger { register: MARK_REGISTER, value: self.last_mark };
+        let program = Program { name: name.to_owned(), statements: vec![statement, mark] };
+        script.send(name, program.encode().as_bytes(), deadline)
+    }
+
+    fn connect_script(&self, deadline: Instant) -> Result<Wire, DeviceError> {
+        let remedy = "enable the primary and secondary client interfaces in the controller's services";
+        // The secondary interface tells us ten states a second that we do not need, the realtime one up to five hundred.
+        Wire::connect(DEVICE, &below(&self.endpoint, BELOW_RTDE_SECONDARY), deadline, remedy)
+            .or_else(|_| Wire::connect(DEVICE, &below(&self.endpoint, BELOW_RTDE_REALTIME), deadline, remedy))
+    }
+}
+
+impl RobotDriver for UrRobot {
+    fn name(&self) -> &'static str {
+        DEVICE
+    }
+
+    fn report(&mut self, deadline: Instant) -> Result<RobotReport, DeviceError> {
+        let state = self.stream.newest(deadline)?;
+        let received_at = Instant::now();
+        let tool = if state.flange_from_tcp.is_some() {
+            "flange; the active TCP is taken off"
+        } else {
+            "active TCP; this software does not tell where it is on the flange"
+        };
+        Ok(RobotReport {
+            base_from_flange: state.base_from_flange(),
+            joints_deg: Vec::new(),
+            is_moving: Some(!state.is_standing()),
+            readiness: self.readiness(&state, deadline),
+            tool: tool.to_owned(),
+            resolution_mm: RESOLUTION_MM,
+            received_at,
+        })
+    }
+
+    fn start_move(&mut self, motion: &LinearMove, deadline: Instant) -> Result<(), DeviceError> {
+        let state = self.stream.newest(deadline)?;
+        refuse_unready(self.readiness(&state, deadline))?;
+        let mut script = self.connect_script(deadline)?;
+        self.stream.last_warning = None;
+        let statement = move_statement(&state, motion);
+        self.run(&mut script, "handeye_move", statement, deadline)?;
+        self.motion =
+            Some(Underway { script, target: motion.base_from_flange, sent_at: Instant::now(), has_played: false });
+        Ok(())
+    }
+
+    fn move_state(&mut self, deadline: Instant) -> Result<MoveState, DeviceError> {
+        let Some(motion) = &mut self.motion else { return Ok(MoveState::Done) };
+        // The interface tells its states to whoever is connected; nobody may let them pile up.
+        motion.script.take_arrived("handeye_move", Duration::ZERO)?;
+        let state = self.stream.newest(deadline)?;
+        motion.has_played |= !state.is_program_stopped();
+        let has_played = motion.has_played;
+        let is_late = motion.sent_at.elapsed() >= START_GRACE;
+        if state.mark == self.last_mark {
+            if !state.is_standing() {
+                return Ok(MoveState::Moving);
+            }
+            let target = motion.target;
+            self.motion = None;
+            check_arrival(DEVICE, &target, &state.base_from_flange())?;
+            return Ok(MoveState::Done);
+        }
+        // In a stop the program may wait for ever.
+        let readiness = state.readiness(None);
+        if matches!(readiness, Readiness::NotReady { .. }) {
+            self.motion = None;
+            refuse_unready(readiness)?;
+        }
+        if state.is_program_stopped() && (has_played || is_late) {
+            let found = match self.stream.last_warning.take() {
+                Some(warning) => warning,
+                None if has_played => "the program ended before the target was reached".to_owned(),
+                None => "the program was not started".to_owned(),
+            };
+            self.motion = None;
+            return Err(DeviceError::Refused {
+                device: DEVICE,
+                request: "handeye_move".to_owned(),
+                found,
+                remedy:
+                    "see the log on the pendant; the controller must be in remote control, and the pose within reach"
+                        .to_owned(),
+            });
+        }
+        Ok(MoveState::Moving)
+    }
+
+    /// A new program ends that which runs.
+    fn stop(&mut self, deadline: Instant) -> Result<(), DeviceError> {
+        let request = "handeye_stop";
+        let start = Instant::now();
+        // Over the same connection, so that it cannot overtake the move.
+        let mut script = match self.motion.take() {
+            Some(motion) => motion.script,
+            None => self.connect_script(deadline)?,
+        };
+        let statement = Statement::StopL { deceleration_m_s2: STOP_DECELERATION_M_S2 };
+        self.run(&mut script, request, statement, deadline)?;
+        loop {
+            script.take_arrived(request, Duration::ZERO)?;
+            let state = self.stream.newest(deadline)?;
+            // In a stop of its own the controller runs no program, and the robot stands.
+            let is_obeyed = state.mark == self.last_mark || matches!(state.readiness(None), Readiness::NotReady { .. });
+            if is_obeyed && state.is_standing() {
+                return Ok(());
+            }
+            if Instant::now() >= deadline {
+                return Err(DeviceError::Timeout {
+                    device: DEVICE,
+                    request: request.to_owned(),
+                    waited: start.elapsed(),
+                });
+            }
+        }
+    }
+}
+
+impl Dashboard {
+    fn connect(endpoint: &Endpoint, deadline: Instant) -> Result<Self, DeviceError> {
+        let remedy = "enable the dashboard in the controller's services";
+        let wire = Wire::connect(DEVICE, endpoint, deadline, remedy)?;
+        let mut dashboard = Self { wire, is_remote: None, asked_at: Instant::now() };
+        dashboard.line("the greeting", deadline)?;
+        dashboard.ask(deadline)?;
+        Ok(dashboard)
+    }
+
+    fn ask(&mut self, deadline: Instant) -> Result<(), DeviceError> {
+        let question = Question::IsInRemoteControl;
+        self.wire.send(question.words(), question.encode().as_bytes(), deadline)?;
+        self.is_remote = dashboard::parse_remote_control(&self.line(question.words(), deadline)?);
+        self.asked_at = Instant::now();
+        Ok(())
+    }
+
+    fn line(&mut self, request: &str, deadline: Instant) -> Result<String, DeviceError> {
+        let line = self.wire.receive(request, deadline, |bytes| {
+            dashboard::line_len(bytes).map_err(|error| error.of(DEVICE, request, "check the port of the dashboard"))
+        })?;
+        Ok(String::from_utf8_lossy(&line).into_owned())
+    }
+}
+
+/// The straight move. Where the turn governs, the time is given: a script has no speed of turning.
+fn move_statement(state: &UrState, motion: &LinearMove) -> Statement {
+    let start = state.base_from_flange();
+    let target = &motion.base_from_flange;
+    let distance_mm = (target.translation_mm() - start.translation_mm()).norm();
+    let turn_deg = start.rotation().angle_to(&target.rotation()).to_degrees();
+    let straight_s = distance_mm / motion.speed_mm_s.max(f64::MIN_POSITIVE);
+    let turn_s = turn_deg / motion.rotation_speed_deg_s.max(f64::MIN_POSITIVE);
+    Statement::MoveL {
+        pose: UrPose::from_pose(&state.tcp_target(target)),
+        acceleration_m_s2: ACCELERATION_M_S2,
+        speed_m_s: motion.speed_mm_s / 1000.0,
+        time_s: if turn_s > straight_s { PEAK_OVER_MEAN * turn_s } else { 0.0 },
+    }
+}
+
+fn refuse_unready(readiness: Readiness) -> Result<(), DeviceError> {
+    match readiness {
+        Readiness::NotReady { found, remedy } => {
+            Err(DeviceError::NotReady { device: DEVICE, found, needed: "running, in remote control", remedy })
+        }
+        Readiness::Ready | Readiness::Unknown | Readiness::ReadOnly => Ok(()),
+    }
+}
+
+/// Another port of the same controller.
+fn below(endpoint: &Endpoint, distance: u16) -> Endpoint {
+    Endpoint { host: endpoint.host.clone(), port: endpoint.port.saturating_sub(distance) }
+}
