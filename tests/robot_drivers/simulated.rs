@@ -78,7 +78,7 @@ fn poses_out_of_reach_are_refused_and_the_robot_stays() {
 }
 
 #[test]
-fn the_page_tells_what_the_server_tells() {
+fn the_page_tells_where_the_robot_is_until_the_cell_is_gone() {
     let (cell, mut page) = cell_and_robot(RobotKind::FanucPage, 1.0);
     let report = page.report(soon()).expect("a page");
     assert_eq!(report.readiness, Readiness::ReadOnly);
