@@ -14,6 +14,8 @@ pub mod machine;
 pub mod replay;
 pub mod report;
 pub mod settings;
+#[cfg(test)]
+mod tests;
 mod trace;
 
 pub use end::SearchEnd;
