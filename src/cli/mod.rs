@@ -8,6 +8,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+pub mod cell;
 pub mod check;
 pub mod export;
 pub mod import;
@@ -51,6 +52,8 @@ pub enum Command {
     Plan(plan::PlanArgs),
     /// Writes a simulated session with its truth
     Simulate(simulate::SimulateArgs),
+    /// Serves a simulated cell on loopback with the real wire protocols, until stopped
+    Cell(cell::CellArgs),
     /// Not available in this version: says what to use instead
     Report(report::ReportArgs),
     /// Draws a step of the window into a PNG file, without a display
@@ -68,6 +71,7 @@ impl Command {
             Self::Export(args) => export::run(args),
             Self::Plan(args) => plan::run(args),
             Self::Simulate(args) => simulate::run(args),
+            Self::Cell(args) => cell::run(args),
             Self::Report(args) => report::run(args),
             Self::Screenshot(args) => screenshot::run(args),
         }

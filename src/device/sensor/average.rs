@@ -79,3 +79,64 @@ fn has_same_grid(a: &Profile, b: &Profile) -> bool {
 const fn as_f64(count: usize) -> f64 {
     count as f64
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_core::{RngCore as _, SeedableRng as _};
+
+    fn profile(z_mm: &[Option<f64>]) -> Arc<Profile> {
+        let x_mm = (0..z_mm.len()).map(|idx| as_f64(idx) * 0.02).collect();
+        Arc::new(Profile::new(x_mm, z_mm).expect("finite"))
+    }
+
+    #[test]
+    fn points_are_missing_where_less_than_half_are_valid() {
+        let profiles = [
+            profile(&[Some(1.0), Some(1.0), Some(1.0), Some(1.0), None]),
+            profile(&[Some(3.0), Some(3.0), Some(3.0), None, None]),
+            profile(&[Some(2.0), Some(2.0), None, None, None]),
+            profile(&[Some(6.0), None, None, None, None]),
+        ];
+        let average = average(&profiles).expect("an average");
+        assert_eq!(average.profile, profile(&[Some(3.0), Some(2.0), Some(2.0), None, None]));
+        // Only the first column is valid in all: 4 + 0 + 1 + 9 over 3.
+        let std_mm = average.repeat_std_mm.expect("repeats");
+        assert!((std_mm - (14.0_f64 / 3.0).sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn one_profile_is_itself_and_says_nothing_of_noise() {
+        let one = profile(&[Some(1.0), None]);
+        let alone = average(std::slice::from_ref(&one)).expect("an average");
+        assert!(Arc::ptr_eq(&alone.profile, &one) && alone.repeat_std_mm.is_none());
+        let never_both = average(&[profile(&[Some(1.0), None]), profile(&[None, Some(1.0)])]).expect("an average");
+        assert_eq!(never_both.repeat_std_mm, None);
+        assert_eq!(never_both.profile, profile(&[Some(1.0), Some(1.0)]));
+    }
+
+    #[test]
+    fn other_grids_are_refused() {
+        let shifted = Arc::new(Profile::new(vec![0.001, 0.021], &[None, None]).expect("finite"));
+        let one = profile(&[None, None]);
+        assert_eq!(average(&[]), Err(AverageError::NoProfile));
+        for other in [profile(&[None]), shifted] {
+            let profiles = [Arc::clone(&one), Arc::clone(&one), other];
+            assert_eq!(average(&profiles), Err(AverageError::GridMismatch { profile_idx: 2 }));
+        }
+    }
+
+    #[test]
+    fn the_noise_is_that_of_a_single_point() {
+        const STD_MM: f64 = 0.01;
+        let mut random = rand_pcg::Pcg64Mcg::seed_from_u64(3);
+        // The sum of twelve even numbers has a σ of 1.
+        let mut normal = || (0..12).map(|_| f64::from(random.next_u32()) / 4_294_967_296.0).sum::<f64>() - 6.0;
+        let profiles: Vec<_> = (0..4)
+            .map(|_| profile(&(0..800).map(|idx| Some(as_f64(idx) * 0.01 + STD_MM * normal())).collect::<Vec<_>>()))
+            .collect();
+        let std_mm = average(&profiles).expect("an average").repeat_std_mm.expect("repeats");
+        // 2400 degrees of freedom know a σ to 1.4 %; four times that.
+        assert!((std_mm / STD_MM - 1.0).abs() < 0.06, "{std_mm}");
+    }
+}

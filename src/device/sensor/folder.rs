@@ -23,6 +23,11 @@ const DEVICE: &str = "Watched folder";
 const QUIET: Duration = Duration::from_millis(150);
 /// One that cannot be read gets so long to become readable, for programs that write in several goes.
 const PATIENCE: Duration = Duration::from_millis(1500);
+/// A folder whose time has not changed holds no new names, once two names of the same time would differ in it: drives
+/// tell times apart to 2 s at worst.
+const COARSEST_TIME: Duration = Duration::from_secs(3);
+/// It is listed so often all the same, for drives that keep no such time.
+const LIST_EVERY: Duration = Duration::from_secs(10);
 /// No file of one profile is as large.
 const MAX_FILE_BYTES: u64 = 16 << 20;
 /// What profiles are saved as; everything else in the folder is left alone, such as pictures and files under way.
@@ -66,6 +71,16 @@ impl Last {
     }
 }
 
+/// The time of the folder, which changes with the names in it.
+#[derive(Clone, Debug)]
+struct FolderTime {
+    modified: SystemTime,
+    /// Since when it is known to be so.
+    since: Instant,
+    /// When the names were last read.
+    listed_at: Instant,
+}
+
 /// A folder that is watched.
 #[derive(Debug)]
 pub struct FolderDriver {
@@ -75,6 +90,7 @@ pub struct FolderDriver {
     seen: HashSet<OsString>,
     fresh: HashMap<OsString, Fresh>,
     last: Option<Last>,
+    time: Option<FolderTime>,
     num_files: u32,
     newest: Option<ProfileReading>,
 }
@@ -91,6 +107,7 @@ impl FolderDriver {
             seen: HashSet::new(),
             fresh: HashMap::new(),
             last: None,
+            time: None,
             num_files: 0,
             newest: None,
         };
@@ -99,35 +116,70 @@ impl FolderDriver {
     }
 
     fn newest_at(&mut self, now: Instant, deadline: Instant) -> Result<Option<ProfileReading>, DeviceError> {
-        self.list(now, deadline)?;
+        self.look(now, deadline)?;
         self.take_complete(now)?;
         Ok(self.newest.clone())
     }
 
     /// A file that is under way now shows what was before, as do those that are complete.
     fn forget_at(&mut self, now: Instant, deadline: Instant) -> Result<(), DeviceError> {
-        self.list(now, deadline)?;
+        self.look(now, deadline)?;
         self.see_all(now);
         self.newest = None;
         Ok(())
     }
 
     /// Looks for files that are not done with.
-    fn list(&mut self, now: Instant, deadline: Instant) -> Result<(), DeviceError> {
-        let lost = |error: io::Error| DeviceError::NotConnected {
+    fn look(&mut self, now: Instant, deadline: Instant) -> Result<(), DeviceError> {
+        let modified = fs::metadata(&self.folder).map_err(|error| self.lost(&error))?.modified().ok();
+        if self.may_have_new_names(modified, now) {
+            return self.list(now, deadline);
+        }
+        if let Some(last) = &mut self.last
+            && let Ok(metadata) = fs::metadata(self.folder.join(&last.name))
+            && last.has_changed(&last.name.clone(), stamp_of(&metadata), now)
+        {
+            self.fresh.insert(last.name.clone(), Fresh { stamp: stamp_of(&metadata), since: now });
+        }
+        Ok(())
+    }
+
+    fn may_have_new_names(&mut self, modified: Option<SystemTime>, now: Instant) -> bool {
+        let is_passed = |since: Instant, time: Duration| now.saturating_duration_since(since) >= time;
+        match (&mut self.time, modified) {
+            (Some(time), Some(modified)) if time.modified == modified => {
+                let was_listed_late = time.listed_at.saturating_duration_since(time.since) >= COARSEST_TIME;
+                let is_due = !self.fresh.is_empty() || !was_listed_late || is_passed(time.listed_at, LIST_EVERY);
+                if is_due {
+                    time.listed_at = now;
+                }
+                is_due
+            }
+            _ => {
+                self.time = modified.map(|modified| FolderTime { modified, since: now, listed_at: now });
+                true
+            }
+        }
+    }
+
+    fn lost(&self, error: &io::Error) -> DeviceError {
+        DeviceError::NotConnected {
             device: DEVICE,
             address: self.folder.display().to_string(),
             reason: error.to_string(),
             remedy: "check that the folder exists and may be read, and that its drive is connected",
-        };
+        }
+    }
+
+    fn list(&mut self, now: Instant, deadline: Instant) -> Result<(), DeviceError> {
         let mut fresh = HashMap::new();
         let mut names = Vec::new();
-        for entry in fs::read_dir(&self.folder).map_err(lost)? {
+        for entry in fs::read_dir(&self.folder).map_err(|error| self.lost(&error))? {
             if Instant::now() >= deadline {
                 let request = format!("list of {}", self.folder.display());
                 return Err(DeviceError::Timeout { device: DEVICE, request, waited: now.elapsed() });
             }
-            let entry = entry.map_err(lost)?;
+            let entry = entry.map_err(|error| self.lost(&error))?;
             let name = entry.file_name();
             let is_last = self.last.as_ref().is_some_and(|last| last.name == name);
             // Of what is done with only the name is looked at, so that thousands of old files cost next to nothing.

@@ -7,6 +7,7 @@ use super::error::DeviceError;
 use super::setup::{SensorKind, SensorSetup};
 
 pub mod average;
+pub mod bridge;
 pub mod folder;
 pub mod ljv;
 
@@ -18,6 +19,6 @@ pub fn connect(setup: &SensorSetup, deadline: Instant) -> Result<Box<dyn SensorD
     match setup.kind {
         SensorKind::KeyenceLjv => Ok(Box::new(ljv::driver::LjvDriver::connect(setup, deadline)?)),
         SensorKind::Folder => Ok(Box::new(folder::FolderDriver::connect(setup, deadline)?)),
-        SensorKind::Bridge => Err(DeviceError::Stopped { device: "Sensor" }),
+        SensorKind::Bridge => Ok(Box::new(bridge::BridgeSensor::connect(setup, deadline)?)),
     }
 }

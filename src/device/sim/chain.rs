@@ -98,7 +98,7 @@ impl Chain {
         }
     }
 
-    /// An arm of the size of a UR5e, by the published Denavit-Hartenberg parameters.
+    /// An arm of the size of a `UR5e`, by the published Denavit-Hartenberg parameters.
     #[must_use]
     pub fn ur5e() -> Self {
         const FULL: [f64; 2] = [-360.0, 360.0];

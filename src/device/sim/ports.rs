@@ -1,5 +1,6 @@
 //! Which ports a cell serves, and where it finds them free.
 
+use std::io::ErrorKind;
 use std::net::TcpListener;
 
 use crate::device::error::DeviceError;
@@ -44,26 +45,38 @@ fn of_robot(robot: RobotKind) -> Vec<PortPlan> {
         service,
         is_main: default_port == robot.default_port(),
     };
+    let one_client = |default_port, what, service| port(default_port, what, Clients::One, service);
+    let port = |default_port, what, service| port(default_port, what, Clients::Many, service);
     match robot {
         RobotKind::FanucMappdk | RobotKind::FanucPage => vec![
-            port(18735, "FANUC MAPPDK server", Clients::One, server::mappdk::serve),
-            port(18736, "FANUC MAPPDK logger", Clients::One, server::mappdk::serve),
+            one_client(18735, "FANUC MAPPDK server", server::mappdk::serve),
+            one_client(18736, "FANUC MAPPDK logger", server::mappdk::serve),
+            port(80, "FANUC web pages (CURPOS.DG, PRGSTATE.DG)", server::curpos::serve),
         ],
-        RobotKind::UniversalRobots | RobotKind::Bridge => Vec::new(),
+        RobotKind::UniversalRobots => vec![
+            port(30004, "Universal Robots RTDE", server::ur_rtde::serve),
+            port(30001, "Universal Robots primary", server::ur_script::serve_state),
+            port(30002, "Universal Robots secondary", server::ur_script::serve_state),
+            port(30003, "Universal Robots real-time", server::ur_script::serve_realtime),
+            port(29999, "Universal Robots dashboard", server::ur_dashboard::serve),
+        ],
+        RobotKind::Bridge => vec![port(27015, "text bridge of a robot", server::bridge::serve_robot)],
     }
 }
 
 fn of_sensor(sensor: SensorKind) -> Vec<PortPlan> {
+    let port = |what, service: Service| PortPlan {
+        default_port: sensor.default_port(),
+        what,
+        device: SimDevice::Sensor,
+        clients: Clients::Many,
+        service,
+        is_main: true,
+    };
     match sensor {
-        SensorKind::KeyenceLjv => vec![PortPlan {
-            default_port: 24691,
-            what: "Keyence LJ-V7000 command port",
-            device: SimDevice::Sensor,
-            clients: Clients::Many,
-            service: server::ljv::serve,
-            is_main: true,
-        }],
-        SensorKind::Bridge | SensorKind::Folder => Vec::new(),
+        SensorKind::KeyenceLjv => vec![port("Keyence LJ-V7000 command port", server::ljv::serve)],
+        SensorKind::Bridge => vec![port("text bridge of a profiler", server::bridge::serve_profiler)],
+        SensorKind::Folder => Vec::new(),
     }
 }
 
@@ -92,15 +105,18 @@ fn bind_at(plans: &[PortPlan], offset: i32) -> Result<Vec<Bound>, DeviceError> {
         what: format!("serving port {port} on 127.0.0.1"),
         reason: format!("{reason}; choose other ports with --port-offset"),
     };
-    plans
-        .iter()
-        .map(|plan| {
-            let wanted = i32::from(plan.default_port) + offset;
-            let port = u16::try_from(wanted).map_err(|_| failed(wanted, "there is no such port".to_owned()))?;
-            let listener = bind(port).map_err(|error| failed(wanted, error.to_string()))?;
-            Ok((port, listener, *plan))
-        })
-        .collect()
+    let mut bound = Vec::new();
+    for plan in plans {
+        let wanted = i32::from(plan.default_port) + offset;
+        let port = u16::try_from(wanted).map_err(|_| failed(wanted, "there is no such port".to_owned()))?;
+        match bind(port) {
+            Ok(listener) => bound.push((port, listener, *plan)),
+            // Ports below 1024 belong to the system: a robot's page is worth no privileges where moves are asked for.
+            Err(error) if error.kind() == ErrorKind::PermissionDenied && !plan.is_main => {}
+            Err(error) => return Err(failed(wanted, error.to_string())),
+        }
+    }
+    Ok(bound)
 }
 
 /// The system chooses where to begin: a port that it hands out is free, and others near it mostly are.

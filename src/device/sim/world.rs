@@ -28,6 +28,9 @@ const POSE_STD_MM_DEG: [f64; 2] = [0.02, 0.005];
 /// Noise of a point of a profile, mm.
 const PROFILE_STD_MM: f64 = 0.01;
 
+/// The time over which speeds are told, s.
+const SPEED_OVER_S: f64 = 1e-3;
+
 /// Random streams, so that one kind of noise does not shift the others.
 mod stream {
     pub const POSE: u64 = 1;
@@ -78,6 +81,23 @@ pub enum Order {
     },
 }
 
+/// A step of a program that the controller runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Step {
+    /// Goes somewhere, and waits until it is there.
+    Go(Order),
+    /// Sets a register.
+    SetRegister {
+        /// Which.
+        register: u8,
+        /// To what.
+        value: i32,
+    },
+}
+
+/// Registers of whole numbers that programs set.
+pub const NUM_REGISTERS: usize = 48;
+
 /// What the controller says of the arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ArmReport {
@@ -87,8 +107,16 @@ pub struct ArmReport {
     pub joints: Joints,
     /// The same as the controller shows them, degrees.
     pub shown_deg: [f64; 6],
+    /// How fast the flange goes, in the base, mm/s.
+    pub velocity_mm_s: Vec3,
+    /// How fast it turns, in the base, rad/s.
+    pub turning_rad_s: Vec3,
     /// Whether it moves.
     pub is_moving: bool,
+    /// Whether a program runs.
+    pub is_running: bool,
+    /// What programs have set.
+    pub registers: [i32; NUM_REGISTERS],
     /// Since the cell began, s of its own clock.
     pub time_s: f64,
 }
@@ -122,6 +150,10 @@ struct State {
     leg: Leg,
     /// Those before, in their order.
     past: VecDeque<Leg>,
+    /// What is left of the program that runs, and when that began.
+    program: VecDeque<Step>,
+    program_at_s: f64,
+    registers: [i32; NUM_REGISTERS],
     pose_noise: Random,
     faults: FaultPlan,
     /// Profiles up to this count were forgotten.
@@ -171,6 +203,9 @@ impl World {
             state: Mutex::new(State {
                 leg,
                 past: VecDeque::new(),
+                program: VecDeque::new(),
+                program_at_s: 0.0,
+                registers: [0; NUM_REGISTERS],
                 pose_noise: Random::new(options.seed, stream::POSE),
                 faults: FaultPlan::new(&options.faults),
                 forgotten: 0,
@@ -202,15 +237,21 @@ impl World {
     /// What the controller says of the arm now.
     #[must_use]
     pub fn arm(&self) -> ArmReport {
-        let time_s = self.now_s();
-        let state = self.state();
+        let (state, time_s) = self.now();
         let motion = &state.leg.motion;
         let joints = motion.joints_at(time_s);
+        let is_moving = time_s < motion.end_s();
+        let base_from_flange = motion.pose_at(&self.layout.chain, time_s);
+        let before = motion.pose_at(&self.layout.chain, time_s - SPEED_OVER_S);
         ArmReport {
-            base_from_flange: motion.pose_at(&self.layout.chain, time_s),
+            base_from_flange,
+            velocity_mm_s: (base_from_flange.translation.vector - before.translation.vector) / SPEED_OVER_S,
+            turning_rad_s: so3::log(&(base_from_flange.rotation * before.rotation.inverse())) / SPEED_OVER_S,
             joints,
             shown_deg: self.layout.chain.shown_deg(&joints),
-            is_moving: time_s < motion.end_s(),
+            is_moving,
+            is_running: is_moving || !state.program.is_empty(),
+            registers: state.registers,
             time_s,
         }
     }
@@ -220,14 +261,56 @@ impl World {
     /// # Errors
     /// [`MotionError`]; the arm goes on with what it did before.
     pub fn start_motion(&self, order: &Order) -> Result<Duration, MotionError> {
-        let mut state = self.state();
+        let (mut state, time_s) = self.now();
+        self.start_leg(&mut state, order, time_s)?;
+        state.program.clear();
+        Ok(self.real(state.leg.motion.end_s() - time_s))
+    }
+
+    /// Runs a program instead of the one that runs. A step that cannot be done ends it.
+    pub fn run_program(&self, steps: impl IntoIterator<Item = Step>) {
+        let (mut state, time_s) = self.now();
+        state.leg.motion.stop_at(time_s);
+        state.program = steps.into_iter().collect();
+        state.program_at_s = time_s;
+        self.advance(&mut state, time_s);
+    }
+
+    /// Stops the arm where it is, and the program with it.
+    pub fn stop(&self) {
+        self.run_program([]);
+    }
+
+    /// Begins the steps of the program that are due, each when the one before was over.
+    ///
+    /// Nothing else drives the program: between two looks at the world nobody can tell.
+    fn advance(&self, state: &mut State, time_s: f64) {
+        while state.leg.motion.end_s() <= time_s {
+            match state.program.pop_front() {
+                Some(Step::Go(order)) => {
+                    let start_s = state.leg.motion.end_s().max(state.program_at_s);
+                    if self.start_leg(state, &order, start_s).is_err() {
+                        state.program.clear();
+                    }
+                }
+                Some(Step::SetRegister { register, value }) => {
+                    if let Some(place) = state.registers.get_mut(usize::from(register)) {
+                        *place = value;
+                    }
+                }
+                None => break,
+            }
+        }
+    }
+
+    /// The motion that an order makes from a time on.
+    fn start_leg(&self, state: &mut State, order: &Order, time_s: f64) -> Result<(), MotionError> {
         if state.faults.refuses_next_move() {
             return Err(MotionError::Refused);
         }
         if state.faults.has(Fault::NotRemote) {
             return Err(MotionError::NotRemote);
         }
-        let time_s = self.now_s();
         let chain = &self.layout.chain;
         let joints = state.leg.motion.joints_at(time_s);
         let (way, cruise_s) = match *order {
@@ -251,60 +334,53 @@ impl World {
             return Err(MotionError::NoSpeed);
         }
         state.leg.motion.stop_at(time_s);
-        let motion = Motion::new(way, time_s, cruise_s);
-        let duration_s = motion.end_s() - time_s;
         let [position_std_mm, orientation_std_rad] = self.pose_std;
         let error = PoseError {
             shift_mm: state.pose_noise.normal3() * position_std_mm,
             turn: state.pose_noise.normal3() * orientation_std_rad,
         };
         let errors = [state.leg.error_at(time_s), error];
-        let before = std::mem::replace(&mut state.leg, Leg { motion, errors });
+        let leg = Leg { motion: Motion::new(way, time_s, cruise_s), errors };
+        let before = std::mem::replace(&mut state.leg, leg);
         state.past.push_back(before);
         if state.past.len() > MAX_MOTIONS {
             state.past.pop_front();
         }
-        Ok(self.real(duration_s))
-    }
-
-    /// Stops the arm where it is.
-    pub fn stop(&self) {
-        let time_s = self.now_s();
-        self.state().leg.motion.stop_at(time_s);
+        Ok(())
     }
 
     /// What becomes of the next message of a device.
     pub fn next_delivery(&self, device: SimDevice) -> Delivery {
-        self.state().faults.next_delivery(device)
+        self.now().0.faults.next_delivery(device)
     }
 
     /// Whether a fault is on.
     #[must_use]
     pub fn has(&self, fault: Fault) -> bool {
-        self.state().faults.has(fault)
+        self.now().0.faults.has(fault)
     }
 
     /// One more fault, counted from now on.
     pub fn inject(&self, spec: FaultSpec) {
-        self.state().faults.add(spec);
+        self.now().0.faults.add(spec);
     }
 
     /// Ends all faults.
     pub fn clear_faults(&self) {
-        self.state().faults.clear();
+        self.now().0.faults.clear();
     }
 
     /// The count of the newest profile; the least one that is held.
     #[must_use]
     pub fn trigger_counts(&self) -> (u32, u32) {
-        let mut state = self.state();
-        let newest = self.newest_count(&mut state);
+        let (mut state, time_s) = self.now();
+        let newest = Self::newest_count(&mut state, time_s);
         (newest, state.forgotten.saturating_add(1))
     }
 
     /// Forgets every profile up to a count.
     pub fn forget_profiles(&self, up_to: u32) {
-        let mut state = self.state();
+        let (mut state, _) = self.now();
         state.forgotten = state.forgotten.max(up_to);
     }
 
@@ -313,7 +389,7 @@ impl World {
     pub fn profile(&self, trigger_count: u32) -> Vec<Height> {
         let time_s = f64::from(trigger_count) / TRIGGERS_PER_S;
         let (base_from_flange, is_pushed) = {
-            let state = self.state();
+            let (state, _) = self.now();
             (self.true_pose(&state, time_s), state.faults.has(Fault::BallMoved))
         };
         let push_mm = if is_pushed { PUSH_MM } else { Vec3::zeros() };
@@ -328,13 +404,18 @@ impl World {
         Duration::try_from_secs_f64(time_s / self.time_scale).unwrap_or(Duration::MAX)
     }
 
-    fn now_s(&self) -> f64 {
-        self.start.elapsed().as_secs_f64() * self.time_scale
+    /// The state as it has become by now, and the time on the cell's own clock.
+    fn now(&self) -> (MutexGuard<'_, State>, f64) {
+        // Nothing panics while it holds the lock; if something did, the state would still be whole.
+        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        let time_s = self.start.elapsed().as_secs_f64() * self.time_scale;
+        self.advance(&mut state, time_s);
+        (state, time_s)
     }
 
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast of a float saturates")]
-    fn newest_count(&self, state: &mut State) -> u32 {
-        let count = (self.now_s() * TRIGGERS_PER_S) as u32;
+    fn newest_count(state: &mut State, time_s: f64) -> u32 {
+        let count = (time_s * TRIGGERS_PER_S) as u32;
         if state.faults.has(Fault::StaleProfile) {
             *state.stale_at.get_or_insert(count)
         } else {
@@ -345,16 +426,11 @@ impl World {
 
     /// Where the flange truly is at a time.
     fn true_pose(&self, state: &State, time_s: f64) -> Rigid {
-        let later = std::iter::once(&state.leg).chain(state.past.iter().rev());
-        let leg = later.filter(|leg| leg.motion.start_s() <= time_s).next();
+        let mut later = std::iter::once(&state.leg).chain(state.past.iter().rev());
+        let leg = later.find(|leg| leg.motion.start_s() <= time_s);
         let leg = leg.or_else(|| state.past.front()).unwrap_or(&state.leg);
         let error = leg.error_at(time_s);
         let off = Rigid::from_parts(Translation3::from(error.shift_mm), so3::exp(error.turn));
         leg.motion.pose_at(&self.layout.chain, time_s) * off
-    }
-
-    fn state(&self) -> MutexGuard<'_, State> {
-        // Nothing panics while it holds the lock; if something did, the state would still be whole.
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -196,11 +196,11 @@ fn a_folder_that_vanishes_is_told_with_a_remedy() {
 #[test]
 fn old_files_are_not_looked_at_again() {
     let mut bench = Bench::new(&[]);
-    for idx in 0..3000 {
+    for idx in 0..500 {
         bench.write(&format!("old{idx}.csv"), "x,z\n0,1\n");
     }
     bench.forget();
-    assert_eq!(bench.driver.seen.len(), 3000);
+    assert_eq!(bench.driver.seen.len(), 500);
     bench.write("new.csv", &sheet(8.0));
     bench.check_newest(8.0, 1);
     assert_eq!(bench.driver.fresh.len(), 0);
@@ -212,4 +212,26 @@ fn z_is_turned_about_where_it_is_asked_for() {
     bench.driver.z_sign = -1.0;
     bench.write("p.csv", &sheet(8.0));
     bench.check_newest(-8.0, 1);
+}
+
+#[test]
+fn a_folder_that_stands_still_is_not_listed() {
+    let mut bench = Bench::new(&[("p1.csv", &sheet(1.0))]);
+    let listed_at = |bench: &Bench| bench.driver.time.as_ref().expect("a time").listed_at;
+    bench.now += COARSEST_TIME;
+    assert_eq!(bench.poll(), Ok(None));
+    let listed = listed_at(&bench);
+    assert_eq!(listed, bench.now);
+    bench.now += LIST_EVERY / 2;
+    assert_eq!(bench.poll(), Ok(None));
+    assert_eq!(listed_at(&bench), listed);
+    // A file that is written over changes nothing in the folder, and a new one does.
+    bench.write("p1.csv", &sheet(20.0));
+    bench.check_newest(20.0, 1);
+    bench.write("p2.csv", &sheet(3.0));
+    bench.check_newest(3.0, 2);
+    bench.now += LIST_EVERY;
+    let due = bench.now;
+    bench.check_newest(3.0, 2);
+    assert!(listed_at(&bench) >= due);
 }

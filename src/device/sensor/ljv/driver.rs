@@ -19,6 +19,8 @@ pub struct LjvDriver {
     is_z_inverted: bool,
     /// Whether a profile is taken only when it is asked for: the trigger mode is external.
     is_triggered_from_here: bool,
+    /// The controller gives each profile once; so this is the newest until another comes.
+    newest: Option<ProfileReading>,
 }
 
 impl LjvDriver {
@@ -28,7 +30,7 @@ impl LjvDriver {
     /// [`DeviceError`].
     pub fn connect(setup: &SensorSetup, deadline: Instant) -> Result<Self, DeviceError> {
         let wire = Wire::connect(messages::DEVICE, &setup.endpoint, deadline, NO_CONNECTION)?;
-        let mut driver = Self { wire, is_z_inverted: setup.is_z_inverted, is_triggered_from_here: false };
+        let mut driver = Self { wire, is_z_inverted: setup.is_z_inverted, is_triggered_from_here: false, newest: None };
         // A wrong mode is told now and not at the first capture.
         let reply = driver.ask(command::GET_PROFILE, ProfileRequest::NONE.encode(), deadline)?;
         ProfileReply::parse(&reply.data)?;
@@ -66,12 +68,15 @@ impl SensorDriver for LjvDriver {
         let reply = self.ask(command::GET_PROFILE, ProfileRequest::NEWEST.encode(), deadline)?;
         let received_at = Instant::now();
         let reply = ProfileReply::parse(&reply.data)?;
-        let Some(raw) = reply.profiles.last() else { return Ok(None) };
-        let profile = Arc::new(reply.in_mm(raw, self.is_z_inverted)?);
-        Ok(Some(ProfileReading { profile, trigger_count: raw.trigger_count, received_at }))
+        if let Some(raw) = reply.profiles.last() {
+            let profile = Arc::new(reply.in_mm(raw, self.is_z_inverted)?);
+            self.newest = Some(ProfileReading { profile, trigger_count: raw.trigger_count, received_at });
+        }
+        Ok(self.newest.clone())
     }
 
     fn forget(&mut self, deadline: Instant) -> Result<(), DeviceError> {
+        self.newest = None;
         self.ask(command::CLEAR_MEMORY, Vec::new(), deadline)?;
         Ok(())
     }

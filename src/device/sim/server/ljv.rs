@@ -12,8 +12,8 @@ use crate::device::sim::world::World;
 const MEMORY: u32 = 1000;
 /// Most profiles of one reply, so that it stays short.
 const MAX_PROFILES: u8 = 16;
-/// What a setting of the controller says here: continuous trigger, batch off, and so on.
-const SETTING: [u8; 4] = [0; 4];
+/// Nothing is wrong, nothing is busy, and settings are 0: continuous trigger, batch off, and so on.
+const ALL_ZERO: [u8; 4] = [0; 4];
 
 /// Talks to one client.
 pub fn serve(world: &World, connection: &mut Connection) {
@@ -44,12 +44,12 @@ fn answer(world: &World, request: &Request, program: &mut u8) -> Reply {
             done(*program, Vec::new())
         }
         (command::CHANGE_PROGRAM, [_, _, _, _]) => Reply::refusal(number, *program, code::PARAMETER),
-        (command::GET_ERROR, _) => done(*program, vec![0; 4]),
-        (command::GET_SETTING, _) if SettingRequest::parse(data).is_some() => done(*program, SETTING.to_vec()),
-        (command::SET_SETTING | command::REFLECT_SETTING, [_, ..]) => done(*program, vec![0; 4]),
-        (CHECK_MEMORY_ACCESS, []) => done(*program, vec![0; 4]),
+        (command::GET_SETTING, _) if SettingRequest::parse(data).is_some() => done(*program, ALL_ZERO.to_vec()),
+        (command::SET_SETTING | command::REFLECT_SETTING, [_, ..]) | (command::GET_ERROR | CHECK_MEMORY_ACCESS, []) => {
+            done(*program, ALL_ZERO.to_vec())
+        }
         (command::GET_PROFILE, _) => match ProfileRequest::parse(data) {
-            Some(wanted) => profiles(world, &wanted).map_or_else(
+            Some(wanted) => profiles(world, wanted).map_or_else(
                 || Reply::refusal(number, *program, code::PARAMETER),
                 |reply| done(*program, reply.encode()),
             ),
@@ -63,7 +63,8 @@ fn answer(world: &World, request: &Request, program: &mut u8) -> Reply {
 /// Asks whether the memory is being written to.
 const CHECK_MEMORY_ACCESS: u8 = 0x34;
 /// What is answered above where its length is right.
-const KNOWN: [u8; 7] = [
+const KNOWN: [u8; 8] = [
+    command::GET_ERROR,
     command::SOFTWARE_TRIGGER,
     command::CLEAR_MEMORY,
     command::CHANGE_PROGRAM,
@@ -74,7 +75,7 @@ const KNOWN: [u8; 7] = [
 ];
 
 /// `None` where the request's values are none of the controller's.
-fn profiles(world: &World, wanted: &ProfileRequest) -> Option<ProfileReply> {
+fn profiles(world: &World, wanted: ProfileRequest) -> Option<ProfileReply> {
     let head = world.head();
     let (newest, first_held) = world.trigger_counts();
     // The first profile of all has the count 1 and the number 0.

@@ -1,0 +1,32 @@
+//! The simulated cell against clients that others wrote, by `tests/clients/run.py`. They come from Python's package index, so
+//! they run only where they are asked for: `HANDEYE_CLIENTS=1 cargo test --test independent_clients -- --nocapture`.
+#![expect(clippy::expect_used, reason = "a test that cannot set itself up must fail")]
+
+use std::path::Path;
+use std::process::Command;
+
+/// How `run.py` ends where a client could not be run.
+const SKIPPED: i32 = 3;
+
+#[test]
+fn clients_of_others_are_satisfied() {
+    if std::env::var_os("HANDEYE_CLIENTS").is_none_or(|value| value.is_empty() || value == "0") {
+        println!(
+            "skipped: set HANDEYE_CLIENTS=1 to run the independent clients; they need Python 3 and its package index"
+        );
+        return;
+    }
+    let python = if cfg!(windows) { "python" } else { "python3" };
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/clients/run.py");
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("clients");
+    let output = match Command::new(python).arg(script).arg(env!("CARGO_BIN_EXE_handeye")).arg(folder).output() {
+        Ok(output) => output,
+        Err(error) => {
+            println!("skipped: {python} cannot be run ({error})");
+            return;
+        }
+    };
+    println!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    let code = output.status.code().expect("an exit status");
+    assert!(code == 0 || code == SKIPPED, "a client found something; see above");
+}
