@@ -9,8 +9,9 @@ use crate::device::{
     LinkState, MotionLimits, MotionRefusal, ProfileReading, RobotReport, RobotSetup, RoutineEnd, SearchReport,
     SearchSettings, SensorSetup, SettleSettings,
 };
-use crate::fit::{ArcFit, ArcRefusal};
 use crate::plan::PlannedStation;
+
+pub use crate::device::LiveProfile;
 
 /// The sensor on the flange as a drawing or a ruler has it: within 10° and 20 mm or so.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -115,17 +116,6 @@ impl<Setup, Report> Default for LinkView<Setup, Report> {
     }
 }
 
-/// A live profile with what was found in it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LiveProfile {
-    /// The profile.
-    pub reading: ProfileReading,
-    /// The arc fitted to it; the reason where there is none.
-    pub arc: Result<Arc<ArcFit>, ArcRefusal>,
-    /// Profiles a second, as they come.
-    pub rate_hz: f64,
-}
-
 /// What a routine is at.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Activity {
@@ -202,7 +192,9 @@ pub struct CellView {
     pub activity: Activity,
     /// The search under way, or the last one.
     pub search: Option<Arc<SearchReport>>,
-    /// How the last routine ended.
+    /// Noise of a point of a profile along the range axis, by the repeats of the last capture, mm.
+    pub repeat_std_mm: Option<f64>,
+    /// How the last routine ended; `None` while one is under way.
     pub last_end: Option<RoutineEnd>,
     /// The station that is proposed.
     pub proposal: Option<Proposal>,

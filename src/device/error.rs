@@ -109,6 +109,27 @@ pub enum DeviceError {
     },
 }
 
+impl DeviceError {
+    /// Whether the device may be asked further over the same connection.
+    #[must_use]
+    pub const fn leaves_connection_usable(&self) -> bool {
+        matches!(
+            self,
+            Self::Refused { .. }
+                | Self::NotReady { .. }
+                | Self::CannotMove { .. }
+                | Self::NotArrived { .. }
+                | Self::Stopped { .. }
+        )
+    }
+
+    /// Whether the same attempt may succeed later although nobody has done anything about it.
+    #[must_use]
+    pub const fn may_pass_by_itself(&self) -> bool {
+        !matches!(self, Self::Refused { .. } | Self::NotReady { .. } | Self::CannotMove { .. })
+    }
+}
+
 /// What a message holds that its protocol does not allow. Parsers are pure and know no device: a driver makes a
 /// [`DeviceError::Unexpected`] of it.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]

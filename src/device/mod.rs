@@ -9,6 +9,8 @@
 //! - [`link`]: the state of a connection, with its back-off; pure.
 //! - [`safety`]: which motion is allowed; pure.
 //! - [`search`]: the paper's search for the largest arc; pure.
+//! - [`worker`]: one thread a device, which owns its driver.
+//! - [`settle`]: when a capture counts; pure.
 //! - [`routine`]: what a cell does as a whole: move, settle, capture, search.
 //! - [`sim`]: a cell that serves the real protocols on loopback.
 //!
@@ -30,12 +32,14 @@ pub mod settle;
 pub mod setup;
 pub mod sim;
 pub mod wire;
+pub mod worker;
 
 pub use driver::{LinearMove, MoveState, ProfileReading, Readiness, RobotDriver, RobotReport, SensorDriver};
 pub use error::DeviceError;
 pub use link::LinkState;
-pub use routine::{RoutineEnd, RoutineEvent, StepCapture};
-pub use safety::{MotionLimits, MotionRefusal, WorkspaceBox};
+pub use routine::{Measurement, Routine, RoutineEnd, RoutineEvent, StepCapture, Task};
+pub use safety::{Arming, MotionLimits, MotionRefusal, WorkspaceBox};
 pub use search::{SearchEnd, SearchPhase, SearchReport, SearchSettings};
 pub use settle::SettleSettings;
 pub use setup::{Endpoint, RobotKind, RobotSetup, SensorKind, SensorSetup};
+pub use worker::{Deadlines, LiveProfile, RobotWorker, SensorWorker};

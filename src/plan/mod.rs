@@ -4,12 +4,18 @@
 //! is in the profile, and from what a station of this kind says about the ball. So the effect of a station is known before
 //! it is measured. Stations are chosen one after the other, each for the least σ of the workspace point.
 //!
+//! A session with a solution is planned from it ([`next_stations`]); an empty one as a whole from a guess ([`from_nothing`]),
+//! where the operator brings the ball into view at every station; a live cell station by station from a guess and what was
+//! measured since ([`next_rough`]), such that the ball stays in view by itself.
+//!
 //! As everywhere in [`crate::calibrate`], poses are inverted inside for [`Mount::Fixed`], and inverted back at the end.
 
 mod information;
 mod nominal;
 mod orientation;
+mod rough;
 mod search;
+mod sight;
 mod typical;
 
 use thiserror::Error;
@@ -17,6 +23,8 @@ use thiserror::Error;
 use crate::calibrate::ball::MIN_STATIONS;
 use crate::calibrate::{BallProblem, Mount, Noise, Solution};
 use crate::geometry::{Base, Flange, Rigid, Transform, Vec3};
+
+pub use rough::{MeasuredStation, View, next_rough, refined};
 
 use information::Information;
 use orientation::Orientations;
@@ -122,8 +130,9 @@ pub fn next_stations(
         .map(|_| {
             search
                 .next(|information| stated.zip(information.point_std()).map(|(stated, after)| stated * after / before))
+                .ok_or(PlanRefusal::NothingWithinLimits)
         })
-        .collect();
+        .collect::<Result<_, _>>()?;
     Ok(Plan { workspace_point_std_mm: stated, stations })
 }
 
@@ -143,7 +152,8 @@ pub fn from_nothing(cell: &RoughCell, limits: &Limits, num: usize) -> Result<Pla
             // What is known of the mounting by guess is no measurement.
             (idx + 1 >= MIN_STATIONS).then(|| information.without(&nominal::prior()).point_std()).flatten()
         };
-        stations.push(if idx == 0 { search.reference(point_std) } else { search.next(point_std) });
+        let station = if idx == 0 { Some(search.reference(point_std)) } else { search.next(point_std) };
+        stations.push(station.ok_or(PlanRefusal::NothingWithinLimits)?);
     }
     Ok(Plan { workspace_point_std_mm: None, stations })
 }

@@ -1,6 +1,6 @@
 //! A cell in which nothing is measured yet: sweeps as they are usual, with a sensor and a robot of usual noise.
 
-use nalgebra::UnitQuaternion;
+use nalgebra::{Matrix6, UnitQuaternion};
 
 use crate::calibrate::Mount;
 use crate::calibrate::observation::{CentreObservation, State};
@@ -9,7 +9,7 @@ use crate::geometry::{Mat3, Rigid, Vec3, so3};
 
 use super::information::about_sensor;
 use super::search::Cell;
-use super::typical::{StationModel, View};
+use super::typical::{Room, StationModel};
 use super::{Limits, PlanRefusal, RoughCell};
 
 /// Noise of a point along the range axis, mm: that of common profilers.
@@ -48,27 +48,15 @@ impl Nominal {
     /// [`PlanRefusal::NothingWithinLimits`] if the ball does not stay in view, [`PlanRefusal::Undetermined`] if the cell's
     /// numbers are none.
     pub fn new(rough: &RoughCell, limits: &Limits) -> Result<Self, PlanRefusal> {
-        let looks_along = rough.looks_along_in_base.try_normalize(0.0).ok_or(PlanRefusal::Undetermined)?;
+        let looks_along = checked(rough)?;
         let mounting = rough.flange_from_sensor;
-        let is_finite = mounting.to_homogeneous().iter().chain(rough.ball_in_base_mm.iter()).all(|v| v.is_finite());
-        if !is_finite
-            || !looks_along.iter().all(|v| v.is_finite())
-            || rough.radius_mm.is_nan()
-            || rough.radius_mm <= 0.0
-        {
-            return Err(PlanRefusal::Undetermined);
-        }
         let [least, most] = limits.standoff_mm.unwrap_or([STANDOFF_MM; 2]);
         let standoff_mm = f64::midpoint(least, most);
         let slack = Vec3::new(1.0, 0.0, 1.0) * (VIEW_RADII * rough.radius_mm);
         let middle = Vec3::new(0.0, 0.0, standoff_mm);
-        let view = View::new(limits, [middle - slack, middle + slack].into_iter());
-        let sweep = sweep(rough, standoff_mm);
-        // With the sensor at the base's origin the ball is where a capture sees it.
-        let at_origin = State { flange_from_sensor: Rigid::identity(), ball_in_base: Vec3::zeros() };
-        let about_sensor = about_sensor(&Normal::of(sweep.iter(), &at_origin));
-        let balls: Vec<Vec3> = sweep.iter().map(|capture| capture.centre_in_sensor).collect();
-        let model = StationModel::new(&balls, &about_sensor, &view).ok_or(PlanRefusal::NothingWithinLimits)?;
+        let room = Room::new(limits, [middle - slack, middle + slack].into_iter());
+        let (balls, about_sensor) = usual_sweep(rough, standoff_mm);
+        let model = StationModel::new(&balls, &about_sensor, &room).ok_or(PlanRefusal::NothingWithinLimits)?;
         Ok(Self {
             cell: Cell {
                 mount: rough.mount,
@@ -79,6 +67,27 @@ impl Nominal {
             reference_point_in_sensor: middle,
         })
     }
+}
+
+/// The direction along which the sensor looks.
+///
+/// # Errors
+/// [`PlanRefusal::Undetermined`] if the cell's numbers are none.
+pub(super) fn checked(rough: &RoughCell) -> Result<Vec3, PlanRefusal> {
+    let looks_along = rough.looks_along_in_base.try_normalize(0.0).ok_or(PlanRefusal::Undetermined)?;
+    let mounting = rough.flange_from_sensor.to_homogeneous();
+    let mut figures = mounting.iter().chain(rough.ball_in_base_mm.iter()).chain(looks_along.iter());
+    let is_sound = figures.all(|v| v.is_finite()) && rough.radius_mm > 0.0;
+    if is_sound { Ok(looks_along) } else { Err(PlanRefusal::Undetermined) }
+}
+
+/// Where the ball is at each capture of a usual sweep, and what that says about (rotation, translation).
+pub(super) fn usual_sweep(rough: &RoughCell, standoff_mm: f64) -> (Vec<Vec3>, Matrix6<f64>) {
+    let sweep = sweep(rough, standoff_mm);
+    // With the sensor at the base's origin the ball is where a capture sees it.
+    let at_origin = State { flange_from_sensor: Rigid::identity(), ball_in_base: Vec3::zeros() };
+    let about_sensor = about_sensor(&Normal::of(sweep.iter(), &at_origin));
+    (sweep.iter().map(|capture| capture.centre_in_sensor).collect(), about_sensor)
 }
 
 /// The captures of a sweep, as a sensor at the base's origin would see the ball pass: what the profiles say about its
@@ -122,7 +131,7 @@ fn section_information(y: f64) -> Mat3 {
 }
 
 /// The sensor looking along a direction, turned so that the flange's x is as near to the base's as may be.
-fn reference(looks_along: Vec3, mounting: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
+pub(super) fn reference(looks_along: Vec3, mounting: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
     let half_turn = so3::exp(Vec3::x() * std::f64::consts::PI);
     let looking = UnitQuaternion::rotation_between(&Vec3::z(), &looks_along).unwrap_or(half_turn);
     let flange_x = looking * (mounting.inverse() * Vec3::x());

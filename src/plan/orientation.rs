@@ -96,15 +96,16 @@ impl Orientations {
         }
     }
 
-    /// Orientations all over the limits.
-    pub fn grid(&self) -> Vec<Orientation> {
-        let spins = (0..NUM_SPINS).map(|idx| self.max_spin * (2.0 * f64::from(idx) / f64::from(NUM_SPINS - 1) - 1.0));
+    /// Orientations all over the limits, or over a part of them about the reference.
+    pub fn grid(&self, part: f64) -> Vec<Orientation> {
+        let (max_tilt, max_spin) = (part * self.max_tilt, part * self.max_spin);
+        let spins = (0..NUM_SPINS).map(|idx| max_spin * (2.0 * f64::from(idx) / f64::from(NUM_SPINS - 1) - 1.0));
         spins
             .flat_map(|spin| {
                 let upright = std::iter::once(Orientation { tilt: 0.0, azimuth: 0.0, spin });
                 let rings = (1..=NUM_RINGS).flat_map(move |ring| {
                     (0..NUM_AZIMUTHS).map(move |idx| Orientation {
-                        tilt: self.max_tilt * f64::from(ring) / f64::from(NUM_RINGS),
+                        tilt: max_tilt * f64::from(ring) / f64::from(NUM_RINGS),
                         azimuth: TAU * f64::from(idx) / f64::from(NUM_AZIMUTHS),
                         spin,
                     })

@@ -10,6 +10,7 @@ use crate::geometry::{Mat3, Rigid, Transform, Vec3};
 use super::PlannedStation;
 use super::information::{Information, information_at};
 use super::orientation::{Orientation, Orientations};
+use super::sight::Sight;
 use super::typical::StationModel;
 
 /// Stations nearer to each other than this, rad (8°), share too much: what the model does not know of, as a bent axis of
@@ -39,6 +40,9 @@ struct Candidate {
     place: [f64; 2],
 }
 
+/// Parts of the limits for which a grid is tried where the ball may leave the view.
+const PARTS: [f64; 4] = [1.0, 0.5, 0.25, 0.1];
+
 /// The places of the ball that the grid tries: in the middle, and in the corners of the view.
 const PLACES: [[f64; 2]; 5] = [[0.5, 0.5], [0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]];
 
@@ -54,25 +58,31 @@ pub(super) struct Search {
     known: Information,
     /// Orientations planned so far.
     taken: Vec<UnitQuaternion<f64>>,
+    /// Whether the ball is sure to be seen; `None` where there is no doubt.
+    sight: Option<Sight>,
 }
 
 impl Search {
     /// `taken`: the orientations that were measured at already.
     pub fn new(cell: Cell, orientations: Orientations, known: &Information, taken: Vec<UnitQuaternion<f64>>) -> Self {
-        Self { cell, orientations, known: *known, taken }
+        Self { cell, orientations, known: *known, taken, sight: None }
     }
 
-    /// Plans the station that helps most. `point_std` says what σ to state for what is known then.
-    pub fn next(&mut self, point_std: impl Fn(&Information) -> Option<f64>) -> PlannedStation {
-        let grid = self.orientations.grid();
-        let best = APART
-            .iter()
-            .find_map(|apart| {
-                let start = self.best_of_grid(&grid, *apart)?;
-                Some(self.refined(start, *apart))
-            })
-            .unwrap_or(UPRIGHT);
-        self.take(best, point_std)
+    /// Only stations at which the ball is sure to be seen.
+    pub fn within_sight(self, sight: &Sight) -> Self {
+        Self { sight: Some(*sight), ..self }
+    }
+
+    /// Plans the station that helps most; `None` if there is none. `point_std` says what σ to state for what is known then.
+    pub fn next(&mut self, point_std: impl Fn(&Information) -> Option<f64>) -> Option<PlannedStation> {
+        // What is sure to be seen may be so near to the reference that it falls between the points of the whole grid.
+        let parts = if self.sight.is_some() { &PARTS[..] } else { &PARTS[..1] };
+        let grids: Vec<Vec<Orientation>> = parts.iter().map(|part| self.orientations.grid(*part)).collect();
+        let best = APART.iter().find_map(|apart| {
+            let start = grids.iter().find_map(|grid| self.best_of_grid(grid, *apart))?;
+            Some(self.refined(start, *apart))
+        })?;
+        Some(self.take(best, point_std))
     }
 
     /// Plans a station at the reference orientation.
@@ -87,6 +97,9 @@ impl Search {
             for model_idx in 0..self.cell.models.len() {
                 for place in PLACES {
                     let candidate = Candidate { orientation: *orientation, model_idx, place };
+                    if !self.is_seen(&candidate, &sensor_from_base) {
+                        continue;
+                    }
                     let variance = self.known.variance_with(&self.brings(&candidate, &sensor_from_base));
                     if best.is_none_or(|(_, least)| variance < least) {
                         best = Some((candidate, variance));
@@ -119,6 +132,9 @@ impl Search {
                         continue;
                     }
                     let sensor_from_base = self.sensor_from_base(trial.orientation);
+                    if !self.is_seen(&trial, &sensor_from_base) {
+                        continue;
+                    }
                     let variance = self.known.variance_with(&self.brings(&trial, &sensor_from_base));
                     if variance < least {
                         (best, least) = (trial, variance);
@@ -159,6 +175,12 @@ impl Search {
 
     fn sensor_from_base(&self, orientation: Orientation) -> Mat3 {
         self.orientations.base_from_sensor(orientation).inverse().to_rotation_matrix().into_inner()
+    }
+
+    fn is_seen(&self, candidate: &Candidate, sensor_from_base: &Mat3) -> bool {
+        let model = &self.cell.models[candidate.model_idx];
+        let ball_in_sensor = model.first_ball_in_sensor + shift(model, candidate.place);
+        self.sight.as_ref().is_none_or(|sight| sight.sees(ball_in_sensor, sensor_from_base))
     }
 
     fn is_apart(&self, orientation: Orientation, apart: f64) -> bool {

@@ -22,7 +22,7 @@ pub(super) struct StationModel {
 
 impl StationModel {
     /// From the ball's centre in the sensor frame at each capture; `None` if the ball cannot stay in view.
-    pub fn new(balls_in_sensor: &[Vec3], about_sensor: &Matrix6<f64>, view: &View) -> Option<Self> {
+    pub fn new(balls_in_sensor: &[Vec3], about_sensor: &Matrix6<f64>, room: &Room) -> Option<Self> {
         let range = |axis: usize, [least, most]: [f64; 2]| {
             let [low, high] = extent(balls_in_sensor.iter().map(|ball| ball[axis]));
             let shift = [least - low, most - high];
@@ -31,7 +31,7 @@ impl StationModel {
         Some(Self {
             first_ball_in_sensor: *balls_in_sensor.first()?,
             about_sensor: *about_sensor,
-            shift_mm: [range(0, view.across_mm)?, range(2, view.along_mm)?],
+            shift_mm: [range(0, room.across_mm)?, range(2, room.along_mm)?],
         })
     }
 
@@ -43,14 +43,14 @@ impl StationModel {
 
 /// Where the ball's centre may be in the sensor frame.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct View {
+pub(super) struct Room {
     /// Least and greatest x, mm.
     pub across_mm: [f64; 2],
     /// Least and greatest z, mm.
     pub along_mm: [f64; 2],
 }
 
-impl View {
+impl Room {
     /// As the limits say, and where they do not, as balls were seen already.
     pub fn new(limits: &Limits, balls_in_sensor: impl Iterator<Item = Vec3> + Clone) -> Self {
         let seen_along = extent(balls_in_sensor.clone().map(|ball| ball.z));
@@ -82,9 +82,9 @@ pub(super) fn models(reduced: &Reduced, limits: &Limits) -> Result<Vec<StationMo
             (run[0].station, run.iter().map(ball).collect())
         })
         .collect();
-    let view = View::new(limits, balls.iter().flat_map(|(_, balls)| balls).copied());
+    let room = Room::new(limits, balls.iter().flat_map(|(_, balls)| balls).copied());
     let stations = balls.iter().filter_map(|(station, balls)| {
-        StationModel::new(balls, &about_sensor(&reduced.sums_of_station(*station, &reduced.state)), &view)
+        StationModel::new(balls, &about_sensor(&reduced.sums_of_station(*station, &reduced.state)), &room)
     });
     let (plus, minus): (Vec<_>, Vec<_>) = stations.partition(|station| station.first_ball_in_sensor.y >= 0.0);
     let models: Vec<StationModel> = [plus, minus].into_iter().filter_map(median).collect();

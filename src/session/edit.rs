@@ -100,6 +100,13 @@ pub enum Edit {
         /// The stations.
         stations: Vec<Station>,
     },
+    /// A further capture of a station, behind those that it has.
+    AppendCapture {
+        /// Index of the station.
+        station_idx: usize,
+        /// The capture.
+        capture: Box<Capture>,
+    },
     /// A copy behind each of these rows.
     Duplicate(Vec<Row>),
     /// These rows taken out; a station without captures goes as well.
@@ -191,6 +198,7 @@ impl Edit {
         match self {
             Self::SetCells(cells) => set_cells(session, cells),
             Self::InsertStations { at, stations } => insert(session, *at, stations),
+            Self::AppendCapture { station_idx, capture } => append(session, *station_idx, capture),
             Self::Duplicate(rows) => duplicate(session, rows),
             Self::Remove(rows) => remove(session, rows),
             Self::Reorder(order) => reorder(session, order),
@@ -345,11 +353,20 @@ fn check_station(station: &mut Station) -> Result<(), EditRefusal> {
     if station.captures.is_empty() {
         return Err(EditRefusal::NoCaptures { label: station.label.clone() });
     }
-    for capture in &mut station.captures {
-        set_pose(capture, capture.base_from_flange, capture.written_angles)?;
-        check_reading(&capture.reading)?;
-        capture.step_mm.map_or(Ok(()), |step_mm| within(step_mm, &limits::STEP_MM))?;
-    }
+    station.captures.iter_mut().try_for_each(check_capture)
+}
+
+fn check_capture(capture: &mut Capture) -> Result<(), EditRefusal> {
+    set_pose(capture, capture.base_from_flange, capture.written_angles)?;
+    check_reading(&capture.reading)?;
+    capture.step_mm.map_or(Ok(()), |step_mm| within(step_mm, &limits::STEP_MM))
+}
+
+fn append(session: &mut Session, station_idx: usize, capture: &Capture) -> Result<(), EditRefusal> {
+    let station = station_at(session, Place { station_idx, capture_idx: 0 })?;
+    let mut added = capture.clone();
+    check_capture(&mut added)?;
+    station.captures.push(added);
     Ok(())
 }
 

@@ -79,6 +79,7 @@ impl Workbench {
     }
 
     pub(super) fn put_on_bench(&mut self, document: Document) {
+        self.let_go_of_document();
         self.forget_errors();
         self.conflict = None;
         self.looking.cancel();
@@ -149,6 +150,7 @@ impl Workbench {
         {
             return;
         }
+        self.let_go_of_document();
         self.forget_errors();
         self.conflict = None;
         self.replace_session(session, RELOAD_LABEL.to_owned(), None);
@@ -195,6 +197,7 @@ impl Workbench {
     }
 
     pub(super) fn close_document(&mut self) {
+        self.let_go_of_document();
         self.loading.cancel();
         self.solving.cancel();
         self.looking.cancel();

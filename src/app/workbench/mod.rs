@@ -21,8 +21,9 @@ use crate::watch::Cancelled;
 use super::jobs::{JobOutcome, Slot, Wake};
 use super::recovery::{Recoverable, Recovery};
 use super::study::Study;
-use super::{CellView, Command, Document};
+use super::{Command, Document};
 
+use self::cell::LiveCell;
 use self::exports::Exported;
 use self::files::{Loaded, Look, Save, SaveOutcome};
 pub use self::imports::ImportDraft;
@@ -99,7 +100,7 @@ pub struct Workbench {
     bootstrap: Study<Bootstrap>,
     imports: Imports,
     exporting: Slot<Exported>,
-    cell: CellView,
+    cell: LiveCell,
 }
 
 impl Workbench {
@@ -131,7 +132,7 @@ impl Workbench {
             bootstrap: Study::default(),
             imports: Imports::default(),
             exporting: Slot::default(),
-            cell: CellView::default(),
+            cell: LiveCell::default(),
         }
     }
 
@@ -328,7 +329,9 @@ impl Workbench {
         }
         let imported = self.poll_imports();
         let exported = self.poll_exports();
-        changed || imported || exported
+        // Last, as a run goes on once the results of its last station are there.
+        let cell = self.poll_cell();
+        changed || imported || exported || cell
     }
 
     fn notify(&mut self, kind: NoticeKind, message: String) {

@@ -25,6 +25,7 @@ const NUM_ITERATIONS: usize = 30;
 
 /// A section with its place on the travel.
 #[derive(Clone, Copy, Debug)]
+#[expect(clippy::struct_field_names, reason = "all of them are lengths")]
 pub(super) struct Section {
     pub travelled_mm: f64,
     pub radius_mm: f64,

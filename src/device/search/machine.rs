@@ -203,7 +203,7 @@ impl Search {
             return self.step_on();
         };
         self.report.phase = SearchPhase::Pass;
-        if !self.trace.is_covered(-sign) && !self.way(-sign).is_closed && self.trace.is_covered(sign) {
+        if !self.trace.is_covered(-sign) && !self.way(-sign).is_closed && self.trace.is_well_covered(sign) {
             return self.turn();
         }
         if beyond_mm > FAR_PART * self.ball_radius_mm {

@@ -12,6 +12,7 @@ pub fn edit_label(edit: &Edit, session: &Session) -> String {
     match edit {
         Edit::SetCells(cells) => cells_label(cells, session),
         Edit::InsertStations { stations, .. } => format!("add {} station{}", stations.len(), plural(stations.len())),
+        Edit::AppendCapture { station_idx, .. } => capture_label(&station_name(*station_idx, session)),
         Edit::Duplicate(rows) => format!("duplicate {}", rows_name(rows, session)),
         Edit::Remove(rows) => format!("delete {}", rows_name(rows, session)),
         Edit::Reorder(_) => "reorder stations".to_owned(),
@@ -36,6 +37,12 @@ fn several_label(edits: &[Edit], session: &Session) -> String {
 #[must_use]
 pub fn import_label(num_stations: usize, source: &str) -> String {
     format!("import {num_stations} station{} from {source}", plural(num_stations))
+}
+
+/// What a cell captures for one station is one step.
+#[must_use]
+pub fn capture_label(station: &str) -> String {
+    format!("capture {station}")
 }
 
 fn station_name(station_idx: usize, session: &Session) -> String {

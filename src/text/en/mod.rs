@@ -1,6 +1,7 @@
 //! English.
 
 pub mod arcs;
+pub mod cell;
 pub mod check;
 pub mod cli;
 pub mod compare;

@@ -1,0 +1,223 @@
+//! A routine at work, and the way of its captures into the document: one station, one step of undo.
+
+use std::collections::HashSet;
+use std::sync::Arc;
+use std::time::Instant;
+
+use crate::app::cell::{Activity, StationRoutine};
+use crate::calibrate::SideChoice;
+use crate::device::{LinkState, Measurement, Routine, RoutineEnd, RoutineEvent, SearchEnd, StepCapture, Task};
+use crate::geometry::{Base, Flange, Profile, Transform};
+use crate::session::edit::{CellValue, free_label};
+use crate::session::model::UnknownFields;
+use crate::session::{Capture, Edit, Place, Reading, Session, Station, new_gesture};
+use crate::text::cell as words;
+use crate::text::edits::capture_label;
+
+use super::super::{NoticeKind, Workbench};
+
+/// A routine with the station that it measures.
+pub(super) struct Measuring {
+    pub routine: Routine,
+    /// The document that its captures belong to; `None` once that has left the bench.
+    document_id: Option<u64>,
+    /// All captures of the station are one step of undo.
+    gesture: u64,
+    label: String,
+    /// The first profile: it tells the station from others, whatever it is called and wherever it is moved.
+    first_profile: Option<Arc<Profile>>,
+    num_captures: usize,
+}
+
+impl Measuring {
+    /// Nothing more is taken from it.
+    pub fn give_up(&mut self) {
+        self.document_id = None;
+    }
+
+    fn station_idx(&self, session: &Session) -> Option<usize> {
+        let first = self.first_profile.as_ref()?;
+        let is_first = |capture: &Capture| {
+            matches!(&capture.reading, Reading::Profile(profile) if Arc::ptr_eq(profile, first))
+        };
+        session.stations.iter().position(|station| station.captures.iter().any(is_first))
+    }
+}
+
+impl Workbench {
+    pub(super) fn capture_here(&mut self) {
+        self.measure_by_hand(StationRoutine::FixedPoint);
+    }
+
+    pub(super) fn find_largest_arc(&mut self) {
+        self.measure_by_hand(StationRoutine::LargestArc);
+    }
+
+    fn measure_by_hand(&mut self, routine: StationRoutine) {
+        if self.cell.run.is_some() {
+            self.notify(NoticeKind::Error, words::BUSY.to_owned());
+        } else if let Err(reason) = self.measure_station(None, routine) {
+            self.notify(NoticeKind::Error, reason);
+        }
+    }
+
+    /// Starts a routine for a new station; or says why there is none.
+    pub(super) fn measure_station(
+        &mut self,
+        go_to: Option<Transform<Base, Flange>>,
+        routine: StationRoutine,
+    ) -> Result<(), String> {
+        if self.cell.measuring.is_some() {
+            return Err(words::BUSY.to_owned());
+        }
+        let Some(document) = &self.document else { return Err(words::NO_SESSION.to_owned()) };
+        let ball = self.ball().ok_or_else(|| words::NOT_A_BALL.to_owned())?;
+        let robot = self.cell.robot.as_ref().ok_or_else(|| words::NO_ROBOT.to_owned())?;
+        let sensor = self.cell.sensor.as_ref().ok_or_else(|| words::NO_SENSOR.to_owned())?;
+        let now = Instant::now();
+        need_ready(robot.client().link_state(now), words::NO_ROBOT)?;
+        need_ready(sensor.client().link_state(now), words::NO_SENSOR)?;
+        let settings = &self.cell.view.settings;
+        let task = Task {
+            go_to,
+            measurement: Some(match routine {
+                StationRoutine::LargestArc => Measurement::LargestArc(settings.search),
+                StationRoutine::FixedPoint => Measurement::Profile,
+            }),
+            settle: settings.settle,
+            ball,
+            arming: self.arming(),
+        };
+        let taken: HashSet<String> = document.session.stations.iter().map(|station| station.label.clone()).collect();
+        let label = free_label(&(taken.len() + 1).to_string(), &taken);
+        // What was begun over one connection does not go on over the next.
+        let (robot, sensor) = (robot.client().of_this_connection(), sensor.client().of_this_connection());
+        self.cell.measuring = Some(Measuring {
+            routine: Routine::start(task, robot, sensor, self.wake.clone()),
+            document_id: Some(document.id),
+            gesture: new_gesture(),
+            label,
+            first_profile: None,
+            num_captures: 0,
+        });
+        self.end_replay();
+        self.forget_proposal();
+        self.cell.view.search = None;
+        self.cell.view.last_end = None;
+        self.cell.view.activity = if go_to.is_some() { Activity::Moving } else { Activity::Settling };
+        Ok(())
+    }
+
+    /// Takes in what the routine has told.
+    pub(super) fn poll_routine(&mut self) -> bool {
+        let mut changed = self.stop_if_taken_back();
+        while let Some(event) = self.cell.measuring.as_mut().and_then(|measuring| measuring.routine.poll()) {
+            changed = true;
+            match event {
+                RoutineEvent::Moving { .. } => self.show_activity(Activity::Moving),
+                RoutineEvent::Settling => self.show_activity(Activity::Settling),
+                RoutineEvent::Captured(capture) => {
+                    self.show_activity(Activity::Thinking);
+                    self.cell.view.repeat_std_mm = capture.repeat_std_mm;
+                    self.keep_capture(capture);
+                }
+                RoutineEvent::Searched(report) => self.cell.view.search = Some(Arc::from(report)),
+                RoutineEvent::Ended(end) => self.end_routine(end),
+            }
+        }
+        changed
+    }
+
+    /// A routine that was told to stop may still tell what it does.
+    fn show_activity(&mut self, activity: Activity) {
+        if self.cell.view.activity != Activity::Stopping {
+            self.cell.view.activity = activity;
+        }
+    }
+
+    /// Puts a capture into the document at once.
+    fn keep_capture(&mut self, captured: StepCapture) {
+        let (Some(measuring), Some(document)) = (&mut self.cell.measuring, &self.document) else { return };
+        if measuring.document_id != Some(document.id) {
+            return;
+        }
+        let profile = Arc::clone(&captured.profile);
+        let capture = Capture {
+            base_from_flange: captured.base_from_flange,
+            written_angles: None,
+            reading: Reading::Profile(captured.profile),
+            step_mm: captured.step_mm,
+            unknown: UnknownFields::new(),
+        };
+        let edit = if measuring.first_profile.is_none() {
+            let station = Station {
+                label: measuring.label.clone(),
+                enabled: true,
+                side: SideChoice::Auto,
+                edge: None,
+                captures: vec![capture],
+                unknown: UnknownFields::new(),
+            };
+            Edit::InsertStations { at: document.session.stations.len(), stations: vec![station] }
+        } else {
+            // A station that is gone was taken back: that is told elsewhere.
+            let Some(station_idx) = measuring.station_idx(&document.session) else { return };
+            Edit::AppendCapture { station_idx, capture: Box::new(capture) }
+        };
+        measuring.first_profile.get_or_insert(profile);
+        let (gesture, label) = (measuring.gesture, capture_label(&words::station(&measuring.label)));
+        if self.edit_as(&edit, Some(gesture), label)
+            && let Some(measuring) = &mut self.cell.measuring
+        {
+            measuring.num_captures += 1;
+        }
+    }
+
+    /// Undo takes a station back while it is being measured: there is no sense in going on.
+    fn stop_if_taken_back(&mut self) -> bool {
+        let (Some(measuring), Some(document)) = (&mut self.cell.measuring, &self.document) else { return false };
+        let is_taken_back = measuring.document_id == Some(document.id)
+            && measuring.first_profile.is_some()
+            && measuring.station_idx(&document.session).is_none();
+        if is_taken_back {
+            measuring.give_up();
+            self.stop_cell();
+            self.notify(NoticeKind::Error, words::STATION_TAKEN_BACK.to_owned());
+        }
+        is_taken_back
+    }
+
+    fn end_routine(&mut self, end: RoutineEnd) {
+        let Some(measuring) = self.cell.measuring.take() else { return };
+        self.cell.view.activity = Activity::Idle;
+        let num_captures = if measuring.document_id.is_some() { measuring.num_captures } else { 0 };
+        if let Some(message) = words::routine_ended(&words::station(&measuring.label), num_captures, &end) {
+            self.notify(NoticeKind::Error, message);
+        }
+        if let RoutineEnd::Searched(SearchEnd::NoArcAtStart { .. } | SearchEnd::ResidualGrew { .. }) = end {
+            self.leave_out(&measuring);
+        }
+        self.cell.view.last_end = Some(end.clone());
+        self.go_on_after(&end);
+    }
+
+    /// Captures that show no ball, or one that moved, take no part until somebody has looked.
+    fn leave_out(&mut self, measuring: &Measuring) {
+        let Some(document) = self.document.as_ref().filter(|document| measuring.document_id == Some(document.id)) else {
+            return;
+        };
+        let Some(station_idx) = measuring.station_idx(&document.session) else { return };
+        let edit = Edit::SetCells(vec![(Place { station_idx, capture_idx: 0 }, CellValue::Used(false))]);
+        let label = capture_label(&words::station(&measuring.label));
+        self.edit_as(&edit, Some(measuring.gesture), label);
+    }
+}
+
+/// The link's own reason, where it has one.
+fn need_ready(state: LinkState, otherwise: &str) -> Result<(), String> {
+    match state {
+        LinkState::Ready => Ok(()),
+        LinkState::Failed { error, .. } => Err(error.to_string()),
+        LinkState::Off | LinkState::Connecting => Err(otherwise.to_owned()),
+    }
+}

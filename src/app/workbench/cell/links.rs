@@ -1,0 +1,159 @@
+//! The two links and the arm switch.
+
+use std::time::Instant;
+
+use crate::app::cell::LinkView;
+use crate::device::safety::check_readiness;
+use crate::device::{
+    Arming, Deadlines, LinkState, RobotSetup, RobotWorker, SensorKind, SensorSetup, SensorWorker, robot, sensor,
+};
+use crate::fit::ArcOptions;
+use crate::geometry::{Base, Flange, Transform};
+use crate::session::Target;
+use crate::text::cell as words;
+
+use super::super::{NoticeKind, Workbench};
+
+/// For how many times its deadline a profile of a watched folder is waited for: there a person has to save it.
+const FOLDER_PATIENCE: u32 = 20;
+
+/// Motion is allowed, at a pose and over a connection.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Armed {
+    base_from_flange: Transform<Base, Flange>,
+    connection: u64,
+}
+
+impl Workbench {
+    pub(super) fn connect_robot(&mut self, setup: RobotSetup) {
+        self.disconnect_robot();
+        self.cell.view.robot = LinkView { setup: Some(setup.clone()), state: LinkState::Connecting, latest: None };
+        let connect = Box::new(move |deadline| robot::connect(&setup, deadline));
+        self.cell.robot = Some(RobotWorker::start(connect, self.cell.deadlines, self.wake.clone()));
+    }
+
+    pub(super) fn connect_sensor(&mut self, setup: SensorSetup) {
+        self.disconnect_sensor();
+        let is_folder = setup.kind == SensorKind::Folder;
+        self.cell.view.sensor = LinkView { setup: Some(setup.clone()), state: LinkState::Connecting, latest: None };
+        self.cell.view.watched_folder = is_folder.then(|| setup.folder.clone());
+        let deadlines = self.cell.deadlines;
+        let profile = if is_folder { deadlines.profile * FOLDER_PATIENCE } else { deadlines.profile };
+        let connect = Box::new(move |deadline| sensor::connect(&setup, deadline));
+        let worker = SensorWorker::start(connect, Deadlines { profile, ..deadlines }, self.wake.clone());
+        worker.client().look_for(self.ball());
+        self.cell.sensor = Some(worker);
+    }
+
+    pub(super) fn disconnect_robot(&mut self) {
+        if self.cell.robot.is_none() {
+            return;
+        }
+        self.disarm();
+        self.stop_cell();
+        self.cell.robot = None;
+        self.cell.view.robot.state = LinkState::Off;
+        self.cell.view.robot.latest = None;
+    }
+
+    pub(super) fn disconnect_sensor(&mut self) {
+        if self.cell.sensor.is_none() {
+            return;
+        }
+        if self.cell.measuring.is_some() || self.cell.run.is_some() {
+            self.stop_cell();
+        }
+        self.cell.sensor = None;
+        self.cell.view.sensor.state = LinkState::Off;
+        self.cell.view.sensor.latest = None;
+        self.cell.view.live = None;
+        self.cell.view.watched_folder = None;
+    }
+
+    /// What the live profiles and the search look for.
+    pub(super) fn ball(&self) -> Option<ArcOptions> {
+        let session = &self.document.as_ref()?.session;
+        let Target::Ball { radius_mm, .. } = session.target else { return None };
+        Some(ArcOptions { ball_radius_mm: radius_mm, profile_std_mm: session.sensor.profile_std_mm })
+    }
+
+    pub(super) fn poll_links(&mut self, now: Instant) -> bool {
+        let mut changed = false;
+        let is_replaying = self.cell.replay.is_some();
+        if let Some(robot) = &self.cell.robot {
+            let (client, view) = (robot.client(), &mut self.cell.view.robot);
+            view.state = client.link_state(now);
+            if client.take_news() {
+                changed = true;
+                if !is_replaying {
+                    view.latest = client.latest();
+                }
+            }
+        }
+        let ball = self.ball();
+        if let Some(sensor) = &self.cell.sensor {
+            let client = sensor.client();
+            client.look_for(ball);
+            self.cell.view.sensor.state = client.link_state(now);
+            if client.take_news() {
+                changed = true;
+                let live = client.live();
+                if !is_replaying {
+                    self.cell.view.sensor.latest = live.as_ref().map(|live| live.reading.clone());
+                    self.cell.view.live = live;
+                }
+            }
+        }
+        changed |= self.disarm_if_lost();
+        self.check_proposal();
+        changed
+    }
+
+    /// A connection that was made anew is another one: nobody has armed that.
+    fn disarm_if_lost(&mut self) -> bool {
+        let Some(armed) = self.cell.armed else { return false };
+        let is_same = self.cell.robot.as_ref().is_some_and(|robot| {
+            self.cell.view.robot.state == LinkState::Ready && robot.client().num_connections() == armed.connection
+        });
+        if is_same {
+            return false;
+        }
+        self.disarm();
+        self.notify(NoticeKind::Error, words::DISARMED.to_owned());
+        true
+    }
+
+    pub(super) fn arm(&mut self) {
+        let report = self.cell.robot.as_ref().and_then(|robot| {
+            let client = robot.client();
+            let is_ready = client.link_state(Instant::now()) == LinkState::Ready;
+            client.latest().filter(|_| is_ready).map(|report| (report, client.num_connections()))
+        });
+        let Some((report, connection)) = report else {
+            self.notify(NoticeKind::Error, words::NO_POSE_TO_ARM_AT.to_owned());
+            return;
+        };
+        if let Err(refusal) = check_readiness(&report.readiness) {
+            self.notify(NoticeKind::Error, refusal.to_string());
+            return;
+        }
+        self.cell.armed = Some(Armed { base_from_flange: report.base_from_flange, connection });
+        self.cell.view.is_armed = true;
+        self.check_proposal();
+    }
+
+    /// Forbids motion; what moves is stopped.
+    pub(super) fn disarm(&mut self) {
+        if self.cell.armed.take().is_some() {
+            self.stop_cell();
+        }
+        self.cell.view.is_armed = false;
+        self.check_proposal();
+    }
+
+    /// The permission to move within the limits as they are set now.
+    pub(super) fn arming(&self) -> Option<Arming> {
+        let limits = self.cell.view.settings.limits;
+        self.cell.armed.map(|armed| Arming { base_from_flange: armed.base_from_flange, limits })
+    }
+}

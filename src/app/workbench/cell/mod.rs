@@ -1,0 +1,122 @@
+//! The live cell behind the window: its links, its routine, its run, and what they bring into the document.
+
+mod captures;
+mod links;
+mod practice;
+mod proposals;
+mod replay;
+mod run;
+
+use std::time::Instant;
+
+use crate::app::cell::{Activity, CellCommand, CellView};
+use crate::device::sim::SimCell;
+use crate::device::{Deadlines, RobotWorker, SensorWorker};
+use crate::text::cell as words;
+
+use self::captures::Measuring;
+use self::links::Armed;
+use self::replay::Replay;
+use self::run::Run;
+use super::{NoticeKind, Workbench};
+
+/// Everything of the cell that is not the document's.
+#[derive(Default)]
+pub(super) struct LiveCell {
+    view: CellView,
+    deadlines: Deadlines,
+    robot: Option<RobotWorker>,
+    sensor: Option<SensorWorker>,
+    armed: Option<Armed>,
+    measuring: Option<Measuring>,
+    /// Which of the poses that could be proposed is wanted, until it is known.
+    wanted_proposal: Option<usize>,
+    /// Which one is proposed.
+    proposed_idx: usize,
+    run: Option<Run>,
+    practice: Option<SimCell>,
+    replay: Option<Replay>,
+}
+
+impl Workbench {
+    /// The live cell as it stands.
+    #[must_use]
+    pub const fn cell(&self) -> &CellView {
+        &self.cell.view
+    }
+
+    /// How long devices are waited for, from the next connection on.
+    pub const fn set_cell_deadlines(&mut self, deadlines: Deadlines) {
+        self.cell.deadlines = deadlines;
+    }
+
+    pub(super) fn command_cell(&mut self, command: CellCommand) {
+        match command {
+            CellCommand::ConnectRobot(setup) => {
+                self.end_practice();
+                self.connect_robot(setup);
+            }
+            CellCommand::ConnectSensor(setup) => {
+                self.end_practice();
+                self.connect_sensor(setup);
+            }
+            CellCommand::DisconnectRobot => self.disconnect_robot(),
+            CellCommand::DisconnectSensor => self.disconnect_sensor(),
+            CellCommand::Practise => self.practise(),
+            CellCommand::EndPractice => self.end_practice(),
+            CellCommand::Arm(true) => self.arm(),
+            CellCommand::Arm(false) => self.disarm(),
+            CellCommand::SetSettings(settings) => self.cell.view.settings = *settings,
+            CellCommand::CaptureStation => self.capture_here(),
+            CellCommand::FindLargestArc => self.find_largest_arc(),
+            CellCommand::ProposeStation => self.want_proposal(0),
+            CellCommand::AcceptProposal => self.accept_proposal(),
+            CellCommand::SkipProposal => self.want_proposal(self.cell.proposed_idx + 1),
+            CellCommand::DropProposal => self.drop_proposal(),
+            CellCommand::StartRun { num_stations } => self.start_run(num_stations),
+            CellCommand::PauseRun => self.pause_run(true),
+            CellCommand::ResumeRun => self.pause_run(false),
+            CellCommand::Stop => self.stop_cell(),
+            CellCommand::StartReplay => self.start_replay(),
+            CellCommand::EndReplay => self.end_replay(),
+        }
+    }
+
+    /// Takes in what the devices and the routine have told. Answers whether anything changed.
+    pub(super) fn poll_cell(&mut self) -> bool {
+        let now = Instant::now();
+        let links = self.poll_links(now);
+        let routine = self.poll_routine();
+        let proposal = self.poll_proposal();
+        let run = self.poll_run();
+        let replay = self.poll_replay(now);
+        links || routine || proposal || run || replay
+    }
+
+    /// Stops the robot first, then everything that would move it again.
+    fn stop_cell(&mut self) {
+        if let Some(robot) = &self.cell.robot {
+            robot.client().stop();
+        }
+        if let Some(measuring) = &self.cell.measuring {
+            measuring.routine.control().stop();
+            self.cell.view.activity = Activity::Stopping;
+        }
+        self.forget_proposal();
+        self.end_run(None);
+    }
+
+    /// The document leaves the bench: what was captured is in it, nothing more comes.
+    pub(super) fn let_go_of_document(&mut self) {
+        self.poll_routine();
+        if self.cell.measuring.is_some() || self.cell.run.is_some() {
+            self.stop_cell();
+            self.notify(NoticeKind::Error, words::DOCUMENT_GONE.to_owned());
+        }
+        if let Some(measuring) = &mut self.cell.measuring {
+            measuring.give_up();
+        }
+        self.forget_proposal();
+        self.end_replay();
+    }
+}

@@ -1,0 +1,73 @@
+//! Practice on the simulated cell: a cell that needs no devices, with a session for its ball.
+
+use crate::app::cell::RoughMounting;
+use crate::device::sim::{SimCell, SimOptions, SimTruth};
+use crate::geometry::{Rigid, Transform};
+use crate::session::model::UnknownFields;
+use crate::session::{Session, Target, Truth};
+use crate::text::cell as words;
+
+use super::super::{NoticeKind, Workbench};
+
+impl Workbench {
+    pub(super) fn practise(&mut self) {
+        self.practise_with(&SimOptions::default());
+    }
+
+    /// Starts a simulated cell, connects to it, and begins a session for its ball.
+    pub fn practise_with(&mut self, options: &SimOptions) {
+        self.end_practice();
+        let cell = match SimCell::start(options) {
+            Ok(cell) => cell,
+            Err(error) => {
+                self.notify(NoticeKind::Error, error.to_string());
+                return;
+            }
+        };
+        self.open_session(session_for(&cell.truth), None);
+        self.cell.view.settings.mounting = Some(mounting(&cell.truth.rough_flange_from_sensor));
+        self.connect_robot(cell.robot_setup.clone());
+        self.connect_sensor(cell.sensor_setup.clone());
+        self.cell.practice = Some(cell);
+        self.cell.view.is_practice = true;
+    }
+
+    /// Ends the simulated cell, if there is one; its session stays.
+    pub(super) fn end_practice(&mut self) {
+        if self.cell.practice.is_none() {
+            return;
+        }
+        self.disconnect_robot();
+        self.disconnect_sensor();
+        self.cell.practice = None;
+        self.cell.view.is_practice = false;
+    }
+}
+
+fn session_for(truth: &SimTruth) -> Session {
+    let mut session = Session::new(Target::ball(truth.radius_mm));
+    words::PRACTICE_NAME.clone_into(&mut session.name);
+    words::PRACTICE_ROBOT.clone_into(&mut session.robot.model);
+    words::PRACTICE_SENSOR.clone_into(&mut session.sensor.model);
+    let [position_std_mm, orientation_std_deg] = truth.pose_std_mm_deg;
+    // A noise of nothing is no noise to state.
+    let stated = |std: f64| (std > 0.0).then_some(std);
+    session.robot.position_std_mm = stated(position_std_mm);
+    session.robot.orientation_std_deg = stated(orientation_std_deg);
+    session.sensor.profile_std_mm = stated(truth.profile_std_mm);
+    session.sensor.reference_distance_mm = Some(truth.reference_distance_mm);
+    session.truth = Some(Truth {
+        flange_from_sensor: Transform::from_rigid(truth.flange_from_sensor),
+        ball_in_base_mm: truth.ball_in_base,
+        unknown: UnknownFields::new(),
+    });
+    session
+}
+
+fn mounting(flange_from_sensor: &Rigid) -> RoughMounting {
+    let q = flange_from_sensor.rotation;
+    RoughMounting {
+        translation_mm: flange_from_sensor.translation.vector.into(),
+        quaternion_wxyz: [q.w, q.i, q.j, q.k],
+    }
+}

@@ -1,0 +1,74 @@
+//! A settled capture: the robot stands still before and after, and the profiles are later than the move.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use crate::device::driver::ProfileReading;
+use crate::device::settle::is_later;
+
+use super::StepCapture;
+use super::run::{Break, Runner};
+
+/// Between two questions for a later profile.
+const ASK_EVERY: Duration = Duration::from_millis(5);
+
+impl Runner {
+    /// Waits until everything is still, and captures; tries again where the robot moved meanwhile.
+    pub(super) fn capture(&self, step_mm: Option<f64>) -> Result<StepCapture, Break> {
+        let settle = &self.task.settle;
+        let mut moved_mm = 0.0;
+        for _ in 0..=settle.num_retries {
+            self.control.wait(Duration::from_millis(settle.settle_ms.into()))?;
+            let before = self.robot.report()?;
+            let readings = self.later_profiles()?;
+            let after = self.robot.report()?;
+            match settle.moved_mm(&before.base_from_flange, &after.base_from_flange) {
+                None if after.is_moving != Some(true) => {
+                    return Ok(capture_of(&readings, after.base_from_flange, step_mm));
+                }
+                None => moved_mm = 0.0,
+                Some(found_mm) => moved_mm = found_mm,
+            }
+        }
+        Err(Break::NeverStill { moved_mm })
+    }
+
+    /// As many profiles as are wanted, each later than the one before, and the first later than this call.
+    fn later_profiles(&self) -> Result<Vec<ProfileReading>, Break> {
+        self.sensor.forget()?;
+        let mut newest_count = self.sensor.newest()?.map(|reading| reading.trigger_count);
+        let num_wanted = usize::from(self.task.settle.num_profiles.max(1));
+        let mut readings = Vec::new();
+        while readings.len() < num_wanted {
+            let reading = self.profile_later_than(newest_count)?;
+            newest_count = Some(reading.trigger_count);
+            readings.push(reading);
+        }
+        Ok(readings)
+    }
+
+    fn profile_later_than(&self, trigger_count: Option<u32>) -> Result<ProfileReading, Break> {
+        let deadline = Instant::now() + self.sensor.deadlines().profile;
+        loop {
+            let newest = self.sensor.newest()?;
+            let is_new =
+                |reading: &ProfileReading| trigger_count.is_none_or(|count| is_later(reading.trigger_count, count));
+            if let Some(reading) = newest.filter(is_new) {
+                return Ok(reading);
+            }
+            if Instant::now() >= deadline {
+                return Err(Break::StaleProfiles { trigger_count: trigger_count.unwrap_or_default() });
+            }
+            self.control.wait(ASK_EVERY)?;
+        }
+    }
+}
+
+fn capture_of(
+    readings: &[ProfileReading],
+    base_from_flange: crate::geometry::Transform<crate::geometry::Base, crate::geometry::Flange>,
+    step_mm: Option<f64>,
+) -> StepCapture {
+    let profile = readings.last().map_or_else(Arc::default, |reading| Arc::clone(&reading.profile));
+    StepCapture { base_from_flange, profile, step_mm, repeat_std_mm: None, num_profiles: 1 }
+}

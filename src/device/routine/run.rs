@@ -1,0 +1,191 @@
+//! The thread of a routine.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::mpsc::Sender;
+use std::time::Duration;
+
+use crate::device::driver::{LinearMove, RobotReport};
+use crate::device::error::DeviceError;
+use crate::device::safety::MotionRefusal;
+use crate::device::search::{Search, SearchNext, SearchSettings, StepSeen};
+use crate::device::worker::{RobotClient, SensorClient};
+use crate::fit::extract_arc;
+use crate::geometry::{Base, Flange, Transform};
+use crate::watch::Wake;
+
+use super::control::{Control, StopWanted};
+use super::{Measurement, RoutineEnd, RoutineEvent, Task};
+
+/// A robot further than this from where it was sent has not arrived, mm; what a search makes of smaller steps is its own.
+const ARRIVED_MM: f64 = 1.0;
+
+pub(super) struct Runner {
+    pub task: Task,
+    pub robot: RobotClient,
+    pub sensor: SensorClient,
+    pub control: Control,
+    pub events: Sender<RoutineEvent>,
+    pub wake: Wake,
+}
+
+/// Why a routine does not go on.
+#[derive(Debug)]
+pub(super) enum Break {
+    Stop,
+    NotAllowed(MotionRefusal),
+    NeverStill { moved_mm: f64 },
+    StaleProfiles { trigger_count: u32 },
+    Device(DeviceError),
+}
+
+impl From<StopWanted> for Break {
+    fn from(_: StopWanted) -> Self {
+        Self::Stop
+    }
+}
+
+impl From<MotionRefusal> for Break {
+    fn from(refusal: MotionRefusal) -> Self {
+        Self::NotAllowed(refusal)
+    }
+}
+
+impl From<DeviceError> for Break {
+    fn from(error: DeviceError) -> Self {
+        if matches!(error, DeviceError::Stopped { .. }) { Self::Stop } else { Self::Device(error) }
+    }
+}
+
+/// A bug of ours.
+pub(super) fn broken_down(robot_stopped: Option<bool>) -> RoutineEnd {
+    let error = DeviceError::System {
+        device: "Cell",
+        what: "the routine".to_owned(),
+        reason: "it broke down; this is a bug in Handeye".to_owned(),
+    };
+    RoutineEnd::Failed { error, robot_stopped }
+}
+
+impl Runner {
+    pub fn run(self) {
+        let outcome = catch_unwind(AssertUnwindSafe(|| self.do_task()));
+        let end = match outcome {
+            Ok(Ok(end)) => end,
+            Ok(Err(Break::NotAllowed(refusal))) => RoutineEnd::NotAllowed(refusal),
+            // The robot stands in these two, but where a thing is not as it should be it is better told.
+            Ok(Err(Break::NeverStill { moved_mm })) => {
+                self.stop_robot();
+                RoutineEnd::NeverStill { moved_mm }
+            }
+            Ok(Err(Break::StaleProfiles { trigger_count })) => {
+                self.stop_robot();
+                RoutineEnd::StaleProfiles { trigger_count }
+            }
+            Ok(Err(Break::Device(error))) => RoutineEnd::Failed { error, robot_stopped: self.stop_robot() },
+            Ok(Err(Break::Stop)) => RoutineEnd::Stopped { robot_stopped: self.stop_robot() },
+            Err(_) => broken_down(self.stop_robot()),
+        };
+        self.tell(RoutineEvent::Ended(end));
+    }
+
+    fn do_task(&self) -> Result<RoutineEnd, Break> {
+        if let Some(target) = &self.task.go_to {
+            self.go_to(target)?;
+        }
+        match &self.task.measurement {
+            None => Ok(RoutineEnd::Done),
+            Some(Measurement::Profile) => {
+                self.tell(RoutineEvent::Settling);
+                let capture = self.capture(None)?;
+                self.tell(RoutineEvent::Captured(capture));
+                Ok(RoutineEnd::Done)
+            }
+            Some(Measurement::LargestArc(settings)) => self.search(settings),
+        }
+    }
+
+    fn go_to(&self, target: &Transform<Base, Flange>) -> Result<(), Break> {
+        let speed_mm_s = self.task.arming.map_or(0.0, |arming| arming.limits.transit_speed_mm_s);
+        self.move_to(target, speed_mm_s)?;
+        let arrived = self.robot.report()?;
+        let distance_mm = (arrived.base_from_flange.translation_mm() - target.translation_mm()).norm();
+        if distance_mm <= ARRIVED_MM {
+            return Ok(());
+        }
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it saturates; for display")]
+        let distance_um = (distance_mm * 1000.0) as u32;
+        Err(DeviceError::NotArrived { device: "Robot", distance_um }.into())
+    }
+
+    fn search(&self, settings: &SearchSettings) -> Result<RoutineEnd, Break> {
+        let first = self.check_search(settings)?;
+        let mut search = Search::new(settings, self.task.ball.ball_radius_mm);
+        let mut previous_mm = None;
+        loop {
+            let commanded_mm = match search.next() {
+                SearchNext::Over(end) => {
+                    if previous_mm.is_none() {
+                        self.tell(RoutineEvent::Searched(Box::new(search.report().clone())));
+                    }
+                    return Ok(RoutineEnd::Searched(end));
+                }
+                SearchNext::CaptureAt { commanded_mm } => commanded_mm,
+            };
+            let step_mm = previous_mm.map(|previous_mm| commanded_mm - previous_mm);
+            // Where a capture is taken again the robot stays.
+            if step_mm.is_some_and(|step_mm| step_mm != 0.0) {
+                let target = Transform::from_rigid(settings.pose_at(first.rigid(), commanded_mm));
+                let speed_mm_s = self.task.arming.map_or(0.0, |arming| arming.limits.search_speed_mm_s);
+                self.move_to(&target, speed_mm_s)?;
+            }
+            previous_mm = Some(commanded_mm);
+            self.tell(RoutineEvent::Settling);
+            let capture = self.capture(step_mm)?;
+            let radius_and_std_mm = extract_arc(&capture.profile, &self.task.ball)
+                .map(|arc| [arc.circle.radius_mm, arc.std_mm()[2]])
+                .map_err(|refusal| refusal.to_string());
+            let travelled_mm = settings.travelled_mm(first.rigid(), capture.base_from_flange.rigid());
+            self.tell(RoutineEvent::Captured(capture));
+            search.take(StepSeen { travelled_mm, radius_and_std_mm });
+            self.tell(RoutineEvent::Searched(Box::new(search.report().clone())));
+        }
+    }
+
+    /// Everything that the search may ask for is allowed before anything is captured; answers where it begins.
+    fn check_search(&self, settings: &SearchSettings) -> Result<Transform<Base, Flange>, Break> {
+        let report = self.robot.report()?;
+        let arming = self.task.arming.ok_or(MotionRefusal::NotArmed)?;
+        arming.check_search(&report.readiness, &report.base_from_flange, settings)?;
+        Ok(report.base_from_flange)
+    }
+
+    /// Checks a move against the robot as it is now, sends it, and waits for its end.
+    fn move_to(&self, target: &Transform<Base, Flange>, speed_mm_s: f64) -> Result<(), Break> {
+        self.control.wait_while_paused()?;
+        let RobotReport { base_from_flange, readiness, .. } = self.robot.report()?;
+        let arming = self.task.arming.ok_or(MotionRefusal::NotArmed)?;
+        let motion = arming.check(&readiness, &base_from_flange, target, speed_mm_s)?;
+        self.tell(RoutineEvent::Moving { base_from_flange: *target });
+        let patience = 3 * duration_of(&motion, &base_from_flange) + self.robot.deadlines().beyond_move;
+        Ok(self.robot.move_to(motion, patience)?)
+    }
+
+    fn stop_robot(&self) -> Option<bool> {
+        self.robot.stop().wait()
+    }
+
+    pub(super) fn tell(&self, event: RoutineEvent) {
+        // Nobody listens to a routine that was given up; it ends by itself.
+        self.events.send(event).ok();
+        (self.wake)();
+    }
+}
+
+/// How long a move takes by its speeds, at most an hour.
+fn duration_of(motion: &LinearMove, from: &Transform<Base, Flange>) -> Duration {
+    const LONGEST_S: f64 = 3600.0;
+    let to = &motion.base_from_flange;
+    let shift_s = (to.translation_mm() - from.translation_mm()).norm() / motion.speed_mm_s;
+    let turn_s = from.rotation().angle_to(&to.rotation()).to_degrees() / motion.rotation_speed_deg_s;
+    Duration::from_secs_f64(shift_s.max(turn_s).clamp(0.0, LONGEST_S))
+}

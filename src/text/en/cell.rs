@@ -1,0 +1,136 @@
+//! What the live cell has to say: notices, and the reasons for a proposed pose.
+
+use crate::device::{MotionRefusal, RoutineEnd};
+use crate::plan::PlannedStation;
+
+use super::plural;
+
+/// A capture has nowhere to go.
+pub const NO_SESSION: &str =
+    "nothing was captured: no session is open. Begin one for a ball of your radius, then capture again";
+/// The open session is for something else.
+pub const NOT_A_BALL: &str =
+    "nothing was captured: the open session's target is no ball. Begin a session for a ball, then capture again";
+/// One thing at a time.
+pub const BUSY: &str = "the cell is at work: stop it first, or wait until it has ended";
+/// There is no robot to ask.
+pub const NO_ROBOT: &str = "no robot is connected: connect one first";
+/// There is no profiler to ask.
+pub const NO_SENSOR: &str = "no profiler is connected: connect one first";
+/// The switch needs to know where the robot is.
+pub const NO_POSE_TO_ARM_AT: &str =
+    "motion was not armed: the robot is not connected, or has not told its pose yet. Connect it, then arm again";
+/// A connection was lost while motion was armed.
+pub const DISARMED: &str =
+    "the connection to the robot was lost, so motion is no longer armed. Look at the robot, then arm again";
+/// What was being captured was taken back.
+pub const STATION_TAKEN_BACK: &str =
+    "the station that was being measured was taken back, so the robot was stopped. Capture it again when you want it";
+/// The document was closed or replaced during a routine.
+pub const DOCUMENT_GONE: &str = "the session was closed or replaced, so the robot was stopped";
+/// A replay has nothing to play.
+pub const NOTHING_TO_REPLAY: &str = "there is nothing to replay: open a session with profiles first";
+/// A rough plan needs to know where the sensor is.
+pub const NO_MOUNTING: &str =
+    "no pose can be proposed yet: say roughly how the sensor is mounted on the flange, or capture a few stations by hand";
+/// A rough plan needs to know where the ball is.
+pub const NO_BALL_SEEN: &str =
+    "no pose can be proposed yet: bring the laser line onto the ball, so that it is known where it is";
+/// Why a run ended.
+pub const STOPPED: &str = "it was stopped";
+/// A recorded capture is a point already.
+pub const NO_PROFILE: &str = "the capture holds no profile";
+/// There is no proposal (any more).
+pub const NO_PROPOSAL: &str = "there is no proposed pose: ask for one first";
+
+/// The name of a simulated cell's session.
+pub const PRACTICE_NAME: &str = "practice";
+/// The simulated robot.
+pub const PRACTICE_ROBOT: &str = "simulated FANUC LR Mate 200iD";
+/// The simulated profiler.
+pub const PRACTICE_SENSOR: &str = "simulated Keyence LJ-V7060";
+
+/// How a routine ended that did not do what it was asked.
+#[must_use]
+pub fn routine_ended(station: &str, num_captures: usize, end: &RoutineEnd) -> Option<String> {
+    let reason = match end {
+        RoutineEnd::Done => return None,
+        RoutineEnd::Searched(end) if end.is_found() => return None,
+        RoutineEnd::Searched(end) => end.to_string(),
+        RoutineEnd::NotAllowed(refusal) => format!("the robot was not moved: {refusal}"),
+        RoutineEnd::NeverStill { moved_mm } => format!(
+            "the robot did not stand still: it moved by {moved_mm:.3} mm during a profile, again and again. Let it settle longer, or allow more"
+        ),
+        RoutineEnd::StaleProfiles { trigger_count } => format!(
+            "no profile came that is later than the move: the trigger count stayed at {trigger_count}. See whether the profiler still measures, and how it is triggered"
+        ),
+        RoutineEnd::Failed { error, robot_stopped } => format!("{error}. {}", stop_taken(*robot_stopped)),
+        RoutineEnd::Stopped { robot_stopped: Some(true) } if num_captures == 0 => return None,
+        RoutineEnd::Stopped { robot_stopped } => format!("stopped on request. {}", stop_taken(*robot_stopped)),
+    };
+    Some(match num_captures {
+        0 => reason,
+        _ => format!("{station}: {reason}. Its {num_captures} capture{} are kept", plural(num_captures)),
+    })
+}
+
+const fn stop_taken(robot_stopped: Option<bool>) -> &'static str {
+    match robot_stopped {
+        Some(true) => "The robot was stopped",
+        Some(false) => "The robot did not take the stop: stop it at its pendant",
+        None => "The robot could not be told to stop: stop it at its pendant",
+    }
+}
+
+/// A run came to its end.
+#[must_use]
+pub fn run_done(num_done: u16, num_failed: u16) -> String {
+    let given_up = if num_failed == 0 { String::new() } else { format!(", {num_failed} given up") };
+    format!("run done: {num_done} station{} measured{given_up}", plural(num_done.into()))
+}
+
+/// A run ended before its time.
+#[must_use]
+pub fn run_ended(num_done: u16, num_stations: u16, reason: &str) -> String {
+    format!("the run ended after {num_done} of {num_stations} stations: {reason}")
+}
+
+/// Too many stations failed one after the other.
+#[must_use]
+pub fn failed_in_a_row(num: u16) -> String {
+    format!("{num} stations in a row were given up. See the notices before")
+}
+
+/// No proposed pose can be gone to.
+#[must_use]
+pub fn nothing_allowed(refusal: &MotionRefusal) -> String {
+    format!("none of the proposed poses can be gone to; of the first, {refusal}")
+}
+
+/// Why a station of the plan is proposed.
+#[must_use]
+pub fn reason_of_planned(station: &PlannedStation, now_mm: Option<f64>) -> String {
+    let how = orientation(station);
+    match (now_mm, station.workspace_point_std_mm) {
+        (Some(now), Some(then)) => {
+            format!("{how}: it brings σ of the workspace point from {now:.3} to about {then:.3} mm")
+        }
+        _ => format!("{how}: of the poses allowed, it tells most about the calibration"),
+    }
+}
+
+/// Why a station is proposed before there is a solution.
+#[must_use]
+pub fn reason_of_rough(station: &PlannedStation) -> String {
+    format!("{}: another orientation, from the rough mounting and the ball as seen so far", orientation(station))
+}
+
+fn orientation(station: &PlannedStation) -> String {
+    format!("tilted {:.0}° towards {:.0}°, turned {:.0}°", station.tilt_deg, station.azimuth_deg, station.spin_deg)
+}
+
+/// A station by its label.
+#[must_use]
+pub fn station(label: &str) -> String {
+    format!("station {label}")
+}
