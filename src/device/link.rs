@@ -161,10 +161,13 @@ mod tests {
     #[test]
     fn what_only_a_person_can_help_with_is_not_tried_again() {
         let now = Instant::now();
-        let refused =
-            DeviceError::Refused { device: "Robot", request: String::new(), found: String::new(), remedy: String::new() };
-        let not_ready =
-            DeviceError::NotReady { device: "Robot", found: String::new(), needed: "", remedy: "" };
+        let refused = DeviceError::Refused {
+            device: "Robot",
+            request: String::new(),
+            found: String::new(),
+            remedy: String::new(),
+        };
+        let not_ready = DeviceError::NotReady { device: "Robot", found: String::new(), needed: "", remedy: "" };
         for error in [refused, not_ready, DeviceError::CannotMove { device: "Robot" }] {
             let mut link = Link::default();
             link.on_failed(error.clone(), now);

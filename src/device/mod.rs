@@ -22,6 +22,8 @@
 pub mod bridge;
 pub mod driver;
 pub mod error;
+#[cfg(test)]
+mod fake;
 pub mod link;
 pub mod robot;
 pub mod routine;

@@ -255,7 +255,12 @@ mod tests {
     }
 
     #[track_caller]
-    fn check(limits: MotionLimits, to: &Transform<Base, Flange>, speed_mm_s: f64, is_expected: impl Fn(&MotionRefusal) -> bool) {
+    fn check(
+        limits: MotionLimits,
+        to: &Transform<Base, Flange>,
+        speed_mm_s: f64,
+        is_expected: impl Fn(&MotionRefusal) -> bool,
+    ) {
         let from = pose(500.0, 0.0, 300.0);
         let refusal = arming(limits).check(&Readiness::Ready, &from, to, speed_mm_s).expect_err("not allowed");
         assert!(is_expected(&refusal), "{refusal}");
@@ -318,10 +323,7 @@ mod tests {
         let (from, to) = (pose(500.0, 0.0, 300.0), pose(501.0, 0.0, 300.0));
         let not_ready = Readiness::NotReady { found: "local mode".to_owned(), remedy: "switch to remote" };
         for (readiness, expected) in [
-            (
-                not_ready,
-                MotionRefusal::NotReady { found: "local mode".to_owned(), remedy: "switch to remote" },
-            ),
+            (not_ready, MotionRefusal::NotReady { found: "local mode".to_owned(), remedy: "switch to remote" }),
             (Readiness::ReadOnly, MotionRefusal::ReadOnly),
         ] {
             let refusal = arming(MotionLimits::default()).check(&readiness, &from, &to, 10.0);

@@ -1,6 +1,6 @@
 //! Robots, one folder a protocol: its messages, and the driver that does the I/O.
 
-mod arrival;
+pub(super) mod arrival;
 pub mod bridge;
 pub mod curpos;
 pub mod mappdk;

@@ -4,7 +4,10 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crate::device::driver::ProfileReading;
+use crate::device::error::DeviceError;
+use crate::device::sensor::average::average;
 use crate::device::settle::is_later;
+use crate::geometry::{Base, Flange, Profile, Transform};
 
 use super::StepCapture;
 use super::run::{Break, Runner};
@@ -20,11 +23,11 @@ impl Runner {
         for _ in 0..=settle.num_retries {
             self.control.wait(Duration::from_millis(settle.settle_ms.into()))?;
             let before = self.robot.report()?;
-            let readings = self.later_profiles()?;
+            let profiles = self.later_profiles()?;
             let after = self.robot.report()?;
             match settle.moved_mm(&before.base_from_flange, &after.base_from_flange) {
                 None if after.is_moving != Some(true) => {
-                    return Ok(capture_of(&readings, after.base_from_flange, step_mm));
+                    return Ok(capture_of(&profiles, after.base_from_flange, step_mm)?);
                 }
                 None => moved_mm = 0.0,
                 Some(found_mm) => moved_mm = found_mm,
@@ -34,17 +37,17 @@ impl Runner {
     }
 
     /// As many profiles as are wanted, each later than the one before, and the first later than this call.
-    fn later_profiles(&self) -> Result<Vec<ProfileReading>, Break> {
+    fn later_profiles(&self) -> Result<Vec<Arc<Profile>>, Break> {
         self.sensor.forget()?;
         let mut newest_count = self.sensor.newest()?.map(|reading| reading.trigger_count);
         let num_wanted = usize::from(self.task.settle.num_profiles.max(1));
-        let mut readings = Vec::new();
-        while readings.len() < num_wanted {
+        let mut profiles = Vec::new();
+        while profiles.len() < num_wanted {
             let reading = self.profile_later_than(newest_count)?;
             newest_count = Some(reading.trigger_count);
-            readings.push(reading);
+            profiles.push(reading.profile);
         }
-        Ok(readings)
+        Ok(profiles)
     }
 
     fn profile_later_than(&self, trigger_count: Option<u32>) -> Result<ProfileReading, Break> {
@@ -65,10 +68,21 @@ impl Runner {
 }
 
 fn capture_of(
-    readings: &[ProfileReading],
-    base_from_flange: crate::geometry::Transform<crate::geometry::Base, crate::geometry::Flange>,
+    profiles: &[Arc<Profile>],
+    base_from_flange: Transform<Base, Flange>,
     step_mm: Option<f64>,
-) -> StepCapture {
-    let profile = readings.last().map_or_else(Arc::default, |reading| Arc::clone(&reading.profile));
-    StepCapture { base_from_flange, profile, step_mm, repeat_std_mm: None, num_profiles: 1 }
+) -> Result<StepCapture, DeviceError> {
+    let mean = average(profiles).map_err(|error| DeviceError::System {
+        device: "Profiler",
+        what: "taking the mean of its profiles".to_owned(),
+        reason: error.to_string(),
+    })?;
+    let num_profiles = u16::try_from(profiles.len()).unwrap_or(u16::MAX);
+    Ok(StepCapture {
+        base_from_flange,
+        profile: mean.profile,
+        step_mm,
+        repeat_std_mm: mean.repeat_std_mm,
+        num_profiles,
+    })
 }

@@ -136,15 +136,11 @@ impl Routine {
         let control = Control::default();
         // Not bounded: there are a few events a capture, captures are limited, and none may be lost or hold up the robot.
         let (sender, events) = channel();
-        let runner =
-            run::Runner { task, robot, sensor, control: control.clone(), events: sender.clone(), wake };
+        let runner = run::Runner { task, robot, sensor, control: control.clone(), events: sender.clone(), wake };
         let spawned = thread::Builder::new().name("routine".to_owned()).spawn(move || runner.run());
         if let Err(error) = spawned {
-            let error = DeviceError::System {
-                device: "Cell",
-                what: "starting a thread".to_owned(),
-                reason: error.to_string(),
-            };
+            let error =
+                DeviceError::System { device: "Cell", what: "starting a thread".to_owned(), reason: error.to_string() };
             sender.send(RoutineEvent::Ended(RoutineEnd::Failed { error, robot_stopped: None })).ok();
         }
         Self { control, events, is_over: false }

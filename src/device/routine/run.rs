@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use crate::device::driver::{LinearMove, RobotReport};
 use crate::device::error::DeviceError;
+use crate::device::robot::arrival::check_arrival;
 use crate::device::safety::MotionRefusal;
 use crate::device::search::{Search, SearchNext, SearchSettings, StepSeen};
 use crate::device::worker::{RobotClient, SensorClient};
@@ -15,9 +16,6 @@ use crate::watch::Wake;
 
 use super::control::{Control, StopWanted};
 use super::{Measurement, RoutineEnd, RoutineEvent, Task};
-
-/// A robot further than this from where it was sent has not arrived, mm; what a search makes of smaller steps is its own.
-const ARRIVED_MM: f64 = 1.0;
 
 pub(super) struct Runner {
     pub task: Task,
@@ -108,13 +106,7 @@ impl Runner {
         let speed_mm_s = self.task.arming.map_or(0.0, |arming| arming.limits.transit_speed_mm_s);
         self.move_to(target, speed_mm_s)?;
         let arrived = self.robot.report()?;
-        let distance_mm = (arrived.base_from_flange.translation_mm() - target.translation_mm()).norm();
-        if distance_mm <= ARRIVED_MM {
-            return Ok(());
-        }
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it saturates; for display")]
-        let distance_um = (distance_mm * 1000.0) as u32;
-        Err(DeviceError::NotArrived { device: "Robot", distance_um }.into())
+        Ok(check_arrival("Robot", target, &arrived.base_from_flange)?)
     }
 
     fn search(&self, settings: &SearchSettings) -> Result<RoutineEnd, Break> {
@@ -171,7 +163,7 @@ impl Runner {
     }
 
     fn stop_robot(&self) -> Option<bool> {
-        self.robot.stop().wait()
+        self.robot.stop_and_wait()
     }
 
     pub(super) fn tell(&self, event: RoutineEvent) {

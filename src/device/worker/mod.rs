@@ -19,7 +19,6 @@ use std::time::{Duration, Instant};
 use super::error::DeviceError;
 use crate::watch::Wake;
 
-pub use post::StopTicket;
 use post::{Next, Post};
 pub use robot::{RobotClient, RobotWorker};
 pub use sensor::{LiveProfile, SensorClient, SensorWorker};

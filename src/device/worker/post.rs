@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::Deadlines;
@@ -199,8 +199,7 @@ impl<Request> Post<Request> {
     ) -> Result<Answer, DeviceError> {
         self.need_connection(what, connection)?;
         let (sender, receiver): (_, Receiver<Result<Answer, DeviceError>>) = sync_channel(1);
-        let timeout =
-            || DeviceError::Timeout { device: self.device, request: what.to_owned(), waited: patience };
+        let timeout = || DeviceError::Timeout { device: self.device, request: what.to_owned(), waited: patience };
         {
             let mut inside = lock(&self.board.inside);
             if inside.is_over || inside.is_left {
@@ -245,6 +244,26 @@ impl<Request> Post<Request> {
         lock(&self.link).num_connections()
     }
 
+    /// Asks for a stop; answers which one it is.
+    pub fn ask_stop(&self) -> u64 {
+        let mut count = 0;
+        self.change(|inside| {
+            inside.num_stops_asked += 1;
+            count = inside.num_stops_asked;
+        });
+        count
+    }
+
+    /// Whether the device took the stop; `None` where it could not be told in time.
+    pub fn wait_for_stop(&self, count: u64) -> Option<bool> {
+        // The thread may be within a request, which has a deadline of its own.
+        let patience = self.deadlines.request + self.deadlines.stop;
+        let is_waiting = |inside: &mut Inside<Request>| inside.num_stops_served < count;
+        let waited = self.board.changed.wait_timeout_while(lock(&self.board.inside), patience, is_waiting);
+        let (inside, timeout) = waited.unwrap_or_else(PoisonError::into_inner);
+        if timeout.timed_out() { None } else { inside.stop_taken }
+    }
+
     /// Ends the thread; waits a little if it is at a request: a robot on the move is to be told to stop.
     pub fn end(&self, patience: Duration) {
         let mut inside = lock(&self.board.inside);
@@ -258,37 +277,5 @@ impl<Request> Post<Request> {
     fn change(&self, change: impl FnOnce(&mut Inside<Request>)) {
         change(&mut lock(&self.board.inside));
         self.board.changed.notify_all();
-    }
-}
-
-/// A stop on its way.
-#[derive(Debug)]
-pub struct StopTicket<'a, Request> {
-    post: &'a Arc<Post<Request>>,
-    count: u64,
-}
-
-impl<'a, Request> StopTicket<'a, Request> {
-    pub(super) fn ask(post: &'a Arc<Post<Request>>) -> Self {
-        let mut count = 0;
-        post.change(|inside| {
-            inside.num_stops_asked += 1;
-            count = inside.num_stops_asked;
-        });
-        Self { post, count }
-    }
-
-    /// Whether the device took it; `None` where it could not be told in time.
-    #[must_use]
-    pub fn wait(&self) -> Option<bool> {
-        // The thread may be within a request, which has a deadline of its own.
-        let patience = self.post.deadlines.request + self.post.deadlines.stop;
-        let board = &self.post.board;
-        let is_waiting = |inside: &mut Inside<Request>| inside.num_stops_served < self.count;
-        let (inside, waited) = board
-            .changed
-            .wait_timeout_while(lock(&board.inside), patience, is_waiting)
-            .unwrap_or_else(PoisonError::into_inner);
-        if waited.timed_out() { None } else { inside.stop_taken }
     }
 }

@@ -4,7 +4,7 @@ use std::sync::mpsc::SyncSender;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use super::post::{Post, StopTicket, lock};
+use super::post::{Post, lock};
 use super::{Connect, Deadlines, Duty, Hold, start};
 use crate::device::driver::{LinearMove, MoveState, RobotDriver, RobotReport};
 use crate::device::error::DeviceError;
@@ -39,11 +39,7 @@ struct RobotDuty {
 }
 
 impl RobotDuty {
-    fn report(
-        &self,
-        driver: &mut Robot,
-        post: &Post<RobotRequest>,
-    ) -> Result<RobotReport, DeviceError> {
+    fn report(&self, driver: &mut Robot, post: &Post<RobotRequest>) -> Result<RobotReport, DeviceError> {
         let report = driver.report(Instant::now() + self.deadlines.request)?;
         *lock(&self.latest) = Some(report.clone());
         post.tell();
@@ -78,7 +74,11 @@ impl RobotDuty {
             let now = Instant::now();
             if now >= deadline {
                 let waited = now - start;
-                return Err(DeviceError::Timeout { device: driver.name(), request: "the end of a move".to_owned(), waited });
+                return Err(DeviceError::Timeout {
+                    device: driver.name(),
+                    request: "the end of a move".to_owned(),
+                    waited,
+                });
             }
             if now >= next_look {
                 next_look = now + Self::LOOK_EVERY;
@@ -171,9 +171,15 @@ impl RobotClient {
         self.post.ask("a move", self.connection, patience, |reply| RobotRequest::Move { motion, deadline, reply })
     }
 
-    /// Stops the robot, whatever it does. Comes back at once; the ticket waits.
-    pub fn stop(&self) -> StopTicket<'_, RobotRequest> {
-        StopTicket::ask(&self.post)
+    /// Stops the robot, whatever it does. Comes back at once.
+    pub fn stop(&self) {
+        self.post.ask_stop();
+    }
+
+    /// Stops the robot, and waits: whether it took the stop; `None` where it could not be told in time.
+    #[must_use]
+    pub fn stop_and_wait(&self) -> Option<bool> {
+        self.post.wait_for_stop(self.post.ask_stop())
     }
 
     /// The deadlines that the worker keeps.

@@ -31,13 +31,14 @@ pub const DOCUMENT_GONE: &str = "the session was closed or replaced, so the robo
 /// A replay has nothing to play.
 pub const NOTHING_TO_REPLAY: &str = "there is nothing to replay: open a session with profiles first";
 /// A rough plan needs to know where the sensor is.
-pub const NO_MOUNTING: &str =
-    "no pose can be proposed yet: say roughly how the sensor is mounted on the flange, or capture a few stations by hand";
+pub const NO_MOUNTING: &str = "no pose can be proposed yet: say roughly how the sensor is mounted on the flange, or capture a few stations by hand";
 /// A rough plan needs to know where the ball is.
 pub const NO_BALL_SEEN: &str =
     "no pose can be proposed yet: bring the laser line onto the ball, so that it is known where it is";
 /// Why a run ended.
 pub const STOPPED: &str = "it was stopped";
+/// Why a run ended.
+pub const DEVICE_FAILED: &str = "a device failed. See to it, arm again, and start a new run";
 /// A recorded capture is a point already.
 pub const NO_PROFILE: &str = "the capture holds no profile";
 /// There is no proposal (any more).

@@ -24,6 +24,7 @@ pub(super) struct Measuring {
     /// All captures of the station are one step of undo.
     gesture: u64,
     label: String,
+    go_to: Option<Transform<Base, Flange>>,
     /// The first profile: it tells the station from others, whatever it is called and wherever it is moved.
     first_profile: Option<Arc<Profile>>,
     num_captures: usize,
@@ -37,9 +38,8 @@ impl Measuring {
 
     fn station_idx(&self, session: &Session) -> Option<usize> {
         let first = self.first_profile.as_ref()?;
-        let is_first = |capture: &Capture| {
-            matches!(&capture.reading, Reading::Profile(profile) if Arc::ptr_eq(profile, first))
-        };
+        let is_first =
+            |capture: &Capture| matches!(&capture.reading, Reading::Profile(profile) if Arc::ptr_eq(profile, first));
         session.stations.iter().position(|station| station.captures.iter().any(is_first))
     }
 }
@@ -97,6 +97,7 @@ impl Workbench {
             document_id: Some(document.id),
             gesture: new_gesture(),
             label,
+            go_to,
             first_profile: None,
             num_captures: 0,
         });
@@ -122,7 +123,7 @@ impl Workbench {
                     self.keep_capture(capture);
                 }
                 RoutineEvent::Searched(report) => self.cell.view.search = Some(Arc::from(report)),
-                RoutineEvent::Ended(end) => self.end_routine(end),
+                RoutineEvent::Ended(end) => self.end_routine(&end),
             }
         }
         changed
@@ -187,23 +188,27 @@ impl Workbench {
         is_taken_back
     }
 
-    fn end_routine(&mut self, end: RoutineEnd) {
+    fn end_routine(&mut self, end: &RoutineEnd) {
         let Some(measuring) = self.cell.measuring.take() else { return };
         self.cell.view.activity = Activity::Idle;
         let num_captures = if measuring.document_id.is_some() { measuring.num_captures } else { 0 };
-        if let Some(message) = words::routine_ended(&words::station(&measuring.label), num_captures, &end) {
+        if let Some(message) = words::routine_ended(&words::station(&measuring.label), num_captures, end) {
             self.notify(NoticeKind::Error, message);
         }
         if let RoutineEnd::Searched(SearchEnd::NoArcAtStart { .. } | SearchEnd::ResidualGrew { .. }) = end {
             self.leave_out(&measuring);
         }
+        if let (Some(pose), false) = (measuring.go_to, end.is_success()) {
+            self.avoid(pose);
+        }
         self.cell.view.last_end = Some(end.clone());
-        self.go_on_after(&end);
+        self.go_on_after(end);
     }
 
     /// Captures that show no ball, or one that moved, take no part until somebody has looked.
     fn leave_out(&mut self, measuring: &Measuring) {
-        let Some(document) = self.document.as_ref().filter(|document| measuring.document_id == Some(document.id)) else {
+        let Some(document) = self.document.as_ref().filter(|document| measuring.document_id == Some(document.id))
+        else {
             return;
         };
         let Some(station_idx) = measuring.station_idx(&document.session) else { return };

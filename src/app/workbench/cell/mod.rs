@@ -16,6 +16,7 @@ use crate::text::cell as words;
 
 use self::captures::Measuring;
 use self::links::Armed;
+use self::proposals::Proposing;
 use self::replay::Replay;
 use self::run::Run;
 use super::{NoticeKind, Workbench};
@@ -29,10 +30,7 @@ pub(super) struct LiveCell {
     sensor: Option<SensorWorker>,
     armed: Option<Armed>,
     measuring: Option<Measuring>,
-    /// Which of the poses that could be proposed is wanted, until it is known.
-    wanted_proposal: Option<usize>,
-    /// Which one is proposed.
-    proposed_idx: usize,
+    proposing: Proposing,
     run: Option<Run>,
     practice: Option<SimCell>,
     replay: Option<Replay>,
@@ -69,9 +67,9 @@ impl Workbench {
             CellCommand::SetSettings(settings) => self.cell.view.settings = *settings,
             CellCommand::CaptureStation => self.capture_here(),
             CellCommand::FindLargestArc => self.find_largest_arc(),
-            CellCommand::ProposeStation => self.want_proposal(0),
+            CellCommand::ProposeStation => self.want_proposal(),
             CellCommand::AcceptProposal => self.accept_proposal(),
-            CellCommand::SkipProposal => self.want_proposal(self.cell.proposed_idx + 1),
+            CellCommand::SkipProposal => self.skip_proposal(),
             CellCommand::DropProposal => self.drop_proposal(),
             CellCommand::StartRun { num_stations } => self.start_run(num_stations),
             CellCommand::PauseRun => self.pause_run(true),
@@ -117,6 +115,7 @@ impl Workbench {
             measuring.give_up();
         }
         self.forget_proposal();
+        self.cell.proposing = Proposing::default();
         self.end_replay();
     }
 }

@@ -30,7 +30,8 @@ pub(super) struct Replay {
     capture_idx: usize,
     /// The arcs and the reports of the station that plays, one a capture.
     station: Option<Played>,
-    _ticker: Ticker,
+    /// Gone once the last capture was shown; that stays to be looked at until the replay is ended.
+    ticker: Option<Ticker>,
 }
 
 /// A station, ready to be played.
@@ -71,9 +72,10 @@ impl Workbench {
             return;
         }
         let has_profile = |capture: &Capture| matches!(capture.reading, Reading::Profile(_));
-        let document = self.document.as_ref().filter(|document| {
-            document.session.stations.iter().flat_map(|station| &station.captures).any(has_profile)
-        });
+        let document = self
+            .document
+            .as_ref()
+            .filter(|document| document.session.stations.iter().flat_map(|station| &station.captures).any(has_profile));
         let Some(document) = document else {
             self.notify(NoticeKind::Error, words::NOTHING_TO_REPLAY.to_owned());
             return;
@@ -86,7 +88,7 @@ impl Workbench {
             station_idx: 0,
             capture_idx: 0,
             station: None,
-            _ticker: Ticker::start(self.wake.clone()),
+            ticker: Some(Ticker::start(self.wake.clone())),
         });
     }
 
@@ -105,7 +107,7 @@ impl Workbench {
     /// Shows the next capture once its time has come.
     pub(super) fn poll_replay(&mut self, now: Instant) -> bool {
         let Some(mut replay) = self.cell.replay.take() else { return false };
-        if now < replay.next_at {
+        if replay.ticker.is_none() || now < replay.next_at {
             self.cell.replay = Some(replay);
             return false;
         }
@@ -122,10 +124,11 @@ impl Workbench {
             (replay.station_idx, replay.capture_idx, replay.station) = (replay.station_idx + 1, 0, None);
         }
         let Some(station) = session.stations.get(replay.station_idx) else {
-            // The last capture stays to be looked at until the replay is ended.
             if let Some(view) = &mut self.cell.view.replay {
                 view.is_over = true;
             }
+            replay.ticker = None;
+            self.cell.replay = Some(replay);
             return true;
         };
         let (station_idx, capture_idx) = (replay.station_idx, replay.capture_idx);

@@ -1,7 +1,7 @@
 //! A run over several stations: measure where the robot stands, then propose, go, measure, and so on.
 
 use crate::app::cell::{Activity, RunView};
-use crate::device::{MotionRefusal, RoutineEnd};
+use crate::device::{DeviceError, MotionRefusal, RoutineEnd};
 use crate::text::cell as words;
 
 use super::super::{NoticeKind, Workbench};
@@ -93,7 +93,10 @@ impl Workbench {
         let is_complete = num_done >= run.num_stations;
         self.show_run();
         match end {
-            RoutineEnd::Failed { error, .. } => self.end_run(Some(error.to_string())),
+            // That pose is out of reach, others may not be.
+            RoutineEnd::Failed { error: DeviceError::Refused { .. }, .. } if num_in_a_row < MOST_FAILED_IN_A_ROW => {}
+            // What happened is in the notice before.
+            RoutineEnd::Failed { .. } => self.end_run(Some(words::DEVICE_FAILED.to_owned())),
             RoutineEnd::Stopped { .. } => self.end_run(Some(words::STOPPED.to_owned())),
             RoutineEnd::NotAllowed(refusal) => self.end_run(Some(refusal.to_string())),
             _ if is_complete => {
@@ -118,7 +121,7 @@ impl Workbench {
             Stage::Between => {
                 self.set_stage(Stage::Proposing);
                 self.cell.view.activity = Activity::Thinking;
-                self.want_proposal(0);
+                self.want_proposal();
             }
             Stage::Proposing if has_proposal && self.cell.view.settings.asks_before_motion => {
                 self.cell.view.activity = Activity::Idle;
@@ -126,7 +129,7 @@ impl Workbench {
             }
             Stage::Proposing if has_proposal => self.go_to_proposal(),
             // Another one was asked for.
-            Stage::Asking if !has_proposal && self.cell.wanted_proposal.is_some() => self.set_stage(Stage::Proposing),
+            Stage::Asking if !has_proposal && self.cell.proposing.is_wanted() => self.set_stage(Stage::Proposing),
             Stage::Proposing | Stage::Asking | Stage::Measuring => return false,
         }
         true
@@ -153,8 +156,9 @@ impl Workbench {
         if !is_paused && run.stage != Stage::Measuring && self.cell.view.proposal.is_none() {
             run.stage = Stage::Between;
         }
-        if let Some(measuring) = &self.cell.measuring {
-            measuring.routine.control().pause(is_paused);
+        match &self.cell.measuring {
+            Some(measuring) => measuring.routine.control().pause(is_paused),
+            None => self.cell.view.activity = Activity::Idle,
         }
         self.show_run();
     }
