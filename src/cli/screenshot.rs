@@ -38,6 +38,8 @@ pub struct ScreenshotArgs {
 pub enum StepName {
     /// The start page, or the session's overview
     Session,
+    /// The live cell
+    Capture,
     /// Profiles and curves
     Arcs,
     /// The pose table
@@ -70,6 +72,7 @@ impl From<StepName> for Step {
     fn from(name: StepName) -> Self {
         match name {
             StepName::Session => Self::Session,
+            StepName::Capture => Self::Capture,
             StepName::Arcs => Self::Arcs,
             StepName::Poses => Self::Poses,
             StepName::Compare => Self::Compare,

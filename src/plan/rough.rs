@@ -46,7 +46,8 @@ pub struct MeasuredStation {
 impl MeasuredStation {
     /// Of a search that found its peak: at the peak the ball's centre is in the laser plane, at the centre of the section.
     ///
-    /// `base_from_flange` is the pose at the peak: that of the capture nearest to it, moved on along the travel.
+    /// `base_from_flange` is the pose at the peak: that of the first capture, moved along the travel as far as the peak is.
+    /// The centre is that of the section nearest to it.
     #[must_use]
     pub fn at_peak(base_from_flange: Transform<Base, Flange>, section_centre_mm: [f64; 2], peak_std_mm: f64) -> Self {
         let [x_mm, z_mm] = section_centre_mm;

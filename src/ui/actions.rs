@@ -4,7 +4,7 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 
 use crate::app::{Document, Workbench};
 use crate::session::{Capture, Reading};
-use crate::text::{document as document_words, import as import_words, shell as words};
+use crate::text::{capture as capture_words, document as document_words, import as import_words, shell as words};
 
 use super::rail::Step;
 
@@ -23,6 +23,12 @@ pub enum Action {
     Paste,
     /// Asks for a session whose stations are to be added to the open one.
     AddSession,
+    /// Asks for the folder that a profiler's software saves profiles into.
+    ChooseWatchedFolder,
+    /// Starts the simulated cell and connects to it.
+    Practise,
+    /// Ends it.
+    EndPractice,
     /// Asks for a file and writes the poses as CSV.
     ExportPoses,
     /// Asks for a folder and writes the profiles as CSV.
@@ -82,6 +88,9 @@ impl Action {
             | Self::ImportFolder
             | Self::Paste
             | Self::AddSession
+            | Self::ChooseWatchedFolder
+            | Self::Practise
+            | Self::EndPractice
             | Self::ExportPoses
             | Self::ExportProfiles => return None,
         };
@@ -99,6 +108,9 @@ impl Action {
             Self::ImportFolder => import_words::IMPORT_FOLDER.to_owned(),
             Self::Paste => import_words::PASTE.to_owned(),
             Self::AddSession => import_words::ADD_SESSION.to_owned(),
+            Self::ChooseWatchedFolder => capture_words::FOLDER_TITLE.to_owned(),
+            Self::Practise => capture_words::PRACTISE.to_owned(),
+            Self::EndPractice => capture_words::END_PRACTICE.to_owned(),
             Self::ExportPoses => import_words::EXPORT_POSES.to_owned(),
             Self::ExportProfiles => import_words::EXPORT_PROFILES.to_owned(),
             Self::Save => words::SAVE.to_owned(),
@@ -138,11 +150,14 @@ impl Action {
             Self::Redo => document
                 .is_none_or(|document| document.history.redo_label().is_none())
                 .then_some(words::NOTHING_TO_REDO),
+            Self::Practise => workbench.cell().is_practice.then_some(capture_words::PRACTICE),
+            Self::EndPractice => (!workbench.cell().is_practice).then_some(capture_words::NO_PRACTICE),
             Self::Open
             | Self::OpenSample(_)
             | Self::Import
             | Self::ImportFolder
             | Self::Paste
+            | Self::ChooseWatchedFolder
             | Self::Quit
             | Self::Help
             | Self::GoTo(_) => None,
@@ -184,7 +199,7 @@ pub fn pressed(ctx: &egui::Context, workbench: &Workbench) -> Vec<Action> {
         .collect();
     // Plain digits belong to a text field while it has the focus.
     if !ctx.egui_wants_keyboard_input() {
-        let digits = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5];
+        let digits = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6];
         pressed.extend(Step::ALL.into_iter().zip(digits).filter_map(|(step, key)| {
             ctx.input_mut(|input| input.consume_key(Modifiers::NONE, key)).then_some(Action::GoTo(step))
         }));

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use egui::{Context, Frame, Grid, Id, Key, Modal, TextEdit, Ui, WidgetInfo};
 
 use crate::app::Workbench;
-use crate::text::{document as document_words, import as import_words, shell as words};
+use crate::text::{capture as capture_words, document as document_words, import as import_words, shell as words};
 
 use super::actions::{Action, OTHER_REDO};
 use super::file_dialog::Purpose;
@@ -254,7 +254,8 @@ pub fn help(ctx: &Context, workbench: &Workbench, open: &mut bool) {
                 }
             }
             key_row(ui, import_words::PASTE_KEYS, import_words::PASTE);
-            key_row(ui, "1 2 3 4 5", words::KEYS_RAIL);
+            key_row(ui, "1 2 3 4 5 6", words::KEYS_RAIL);
+            key_row(ui, capture_words::STOP_KEYS, capture_words::STOP_KEYS_HINT);
             key_row(ui, "↑ ↓", words::KEYS_LIST);
             key_row(ui, "← →", words::KEYS_STEPS);
             key_row(ui, words::TAB, words::KEYS_TAB);

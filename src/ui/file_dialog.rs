@@ -6,7 +6,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::app::jobs::Wake;
-use crate::text::{import as import_words, shell as words};
+use crate::text::{capture as capture_words, import as import_words, shell as words};
 
 /// Nobody cancels a dialog faster than this; so quick a "nothing chosen" means that no dialog came up.
 const FASTEST_CANCEL: Duration = Duration::from_millis(500);
@@ -28,6 +28,8 @@ pub enum Purpose {
     ExportPoses,
     /// Choosing a folder to write the profiles to.
     ExportProfiles,
+    /// Choosing the folder that a profiler's software saves profiles into.
+    WatchedFolder,
 }
 
 /// Files of poses and profiles by their endings.
@@ -45,6 +47,7 @@ impl Purpose {
             Self::AddSession => import_words::ADD_SESSION_PATH_TITLE,
             Self::ExportPoses => import_words::EXPORT_POSES_TITLE,
             Self::ExportProfiles => import_words::EXPORT_PROFILES_TITLE,
+            Self::WatchedFolder => capture_words::FOLDER_TITLE,
         }
     }
 
@@ -56,6 +59,7 @@ impl Purpose {
             Self::Save => words::SAVE,
             Self::ImportFiles | Self::ImportFolder | Self::AddSession => import_words::IMPORT_BUTTON,
             Self::ExportPoses | Self::ExportProfiles => import_words::EXPORT_BUTTON,
+            Self::WatchedFolder => capture_words::FOLDER_BUTTON,
         }
     }
 
@@ -142,7 +146,7 @@ fn ask(purpose: Purpose, suggested_name: &str) -> Answer {
             let dialog = dialog.add_filter(import_words::CSV_FILTER, &["csv"]);
             dialog.set_file_name(suggested_name).save_file().map(one)
         }
-        Purpose::ImportFolder | Purpose::ExportProfiles => dialog.pick_folder().map(one),
+        Purpose::ImportFolder | Purpose::ExportProfiles | Purpose::WatchedFolder => dialog.pick_folder().map(one),
     };
     match chosen.filter(|paths| !paths.is_empty()) {
         Some(paths) => Answer::Chosen(purpose, paths),

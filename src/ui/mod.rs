@@ -5,6 +5,7 @@
 
 pub mod actions;
 pub mod arcs;
+pub mod capture;
 pub mod charts;
 pub mod compare;
 pub mod diagnosis;

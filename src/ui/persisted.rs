@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use egui::ThemePreference;
 use serde::{Deserialize, Serialize};
 
+use super::capture::{CellMemory, memory};
 use super::import::ImportMemory;
 
 /// Recent files kept.
@@ -48,6 +49,9 @@ pub struct Persisted {
     pub inspector_open: bool,
     /// How tables were read that were imported.
     pub imports: ImportMemory,
+    /// Robots and profilers, and what is set before motion.
+    #[serde(serialize_with = "memory::to_text", deserialize_with = "memory::from_text")]
+    pub cell: CellMemory,
 }
 
 impl Default for Persisted {
@@ -58,6 +62,7 @@ impl Default for Persisted {
             recent_files: Vec::new(),
             inspector_open: true,
             imports: ImportMemory::default(),
+            cell: CellMemory::default(),
         }
     }
 }

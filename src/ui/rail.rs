@@ -2,13 +2,16 @@
 
 use egui::{Align2, CornerRadius, Rect, Role, Sense, TextStyle, Ui, WidgetInfo, vec2};
 
-use crate::app::Workbench;
+use crate::app::{CellView, Workbench};
 use crate::calibrate::Verdict;
+use crate::device::LinkState;
 use crate::diagnose::{Severity, verdict_with};
+use crate::text::capture as capture_words;
 use crate::text::methods::verdict_mark;
 use crate::text::shell as words;
 
 use super::actions::Action;
+use super::capture::model::is_running;
 use super::{Selection, theme};
 
 /// Height of a step, points: large enough for a gloved hand.
@@ -20,6 +23,8 @@ pub enum Step {
     /// Opening a session and its overview.
     #[default]
     Session,
+    /// The live cell.
+    Capture,
     /// Profiles with their circles and sweeps.
     Arcs,
     /// The pose table.
@@ -32,13 +37,14 @@ pub enum Step {
 
 impl Step {
     /// All steps in the order of the rail.
-    pub const ALL: [Self; 5] = [Self::Session, Self::Arcs, Self::Poses, Self::Compare, Self::Diagnosis];
+    pub const ALL: [Self; 6] = [Self::Session, Self::Capture, Self::Arcs, Self::Poses, Self::Compare, Self::Diagnosis];
 
     /// The step's name.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Session => words::STEP_SESSION,
+            Self::Capture => capture_words::STEP,
             Self::Arcs => words::STEP_ARCS,
             Self::Poses => words::STEP_POSES,
             Self::Compare => words::STEP_COMPARE,
@@ -49,6 +55,7 @@ impl Step {
     const fn hint(self) -> &'static str {
         match self {
             Self::Session => words::STEP_SESSION_HINT,
+            Self::Capture => capture_words::STEP_HINT,
             Self::Arcs => words::STEP_ARCS_HINT,
             Self::Poses => words::STEP_POSES_HINT,
             Self::Compare => words::STEP_COMPARE_HINT,
@@ -118,7 +125,24 @@ fn paint_mark(ui: &Ui, rect: Rect, mark: &Mark) {
     ui.painter().text(rect.right_center() - vec2(12.0, 0.0), Align2::RIGHT_CENTER, text, font, color);
 }
 
+/// Broken, moving, or ready; nothing where no cell is wanted.
+fn capture_mark(cell: &CellView) -> Mark {
+    let states = [&cell.robot.state, &cell.sensor.state];
+    if states.iter().any(|state| matches!(state, LinkState::Failed { .. })) {
+        Mark::Bad("✖".to_owned())
+    } else if is_running(cell) {
+        Mark::Look("▶".to_owned())
+    } else if states.iter().all(|state| **state == LinkState::Ready) {
+        Mark::Fine("✔".to_owned())
+    } else {
+        Mark::None
+    }
+}
+
 fn mark(workbench: &Workbench, selection: &Selection, num_pose_remarks: usize, step: Step) -> Mark {
+    if step == Step::Capture {
+        return capture_mark(workbench.cell());
+    }
     let (Some(document), Some(results)) = (workbench.document(), workbench.results()) else {
         return match (step, workbench.document()) {
             (Step::Session, Some(_)) => Mark::Fine("✔".to_owned()),
@@ -132,6 +156,7 @@ fn mark(workbench: &Workbench, selection: &Selection, num_pose_remarks: usize, s
     };
     match step {
         Step::Session => Mark::Fine("✔".to_owned()),
+        Step::Capture => Mark::None,
         // Nothing is no reason for a tick.
         Step::Arcs | Step::Poses | Step::Diagnosis if document.session.stations.is_empty() => Mark::None,
         Step::Arcs => counted(super::poses::model::num_refused(&document.session, results)),

@@ -1,16 +1,19 @@
 //! The line at the bottom: the next step, and how the solver is doing. Above it, notices.
 
-use egui::{Align, Layout, ProgressBar, RichText, Ui};
+use egui::{Align, Layout, ProgressBar, RichText, Ui, vec2};
 
+use crate::app::cell::CellCommand;
 use crate::app::{Command, Notice, NoticeKind, Progress, Workbench};
 use crate::diagnose::{Finding, Severity};
 use crate::session::{Reading, Target};
+use crate::text::capture as capture_words;
 use crate::text::diagnosis_panel as panel_words;
 use crate::text::import as import_words;
 use crate::text::shell as words;
 use crate::text::start::captures as captures_text;
 
 use super::actions::Action;
+use super::capture::{self, model::is_running};
 use super::rail::Step;
 use super::{theme, widgets};
 
@@ -28,14 +31,29 @@ pub fn show(ui: &mut Ui, workbench: &Workbench, step: Step, actions: &mut Vec<Ac
             }
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            // The capture step has a larger one of its own.
+            if step != Step::Capture && is_running(workbench.cell()) {
+                stop(ui, workbench, commands);
+            }
             progress_or_summary(ui, workbench, commands);
         });
     });
 }
 
+/// The robot moves while another step is in sight.
+fn stop(ui: &mut Ui, workbench: &Workbench, commands: &mut Vec<Command>) {
+    if capture::stop_button(ui, vec2(0.0, 32.0), capture_words::STOP_ROBOT, true) {
+        commands.push(Command::Cell(Box::new(CellCommand::Stop)));
+    }
+    if let Some(run) = workbench.cell().run {
+        ui.label(capture_words::run_progress(run.num_done, run.num_stations, run.num_failed));
+    }
+}
+
 /// Along the rail. A session without stations needs some; findings go first wherever one is, as they change all that follows.
 fn next(workbench: &Workbench, step: Step) -> Option<(String, Action)> {
-    let document = workbench.document()?;
+    // The capture step's own band says what comes next.
+    let document = workbench.document().filter(|_| step != Step::Capture)?;
     if document.session.stations.is_empty() && !matches!(document.session.target, Target::Rgbd { .. }) {
         let (label, action) = match step {
             Step::Poses => (import_words::IMPORT, Action::Import),
@@ -50,7 +68,7 @@ fn next(workbench: &Workbench, step: Step) -> Option<(String, Action)> {
         return Some((words::next_findings(num_findings), Action::GoTo(Step::Diagnosis)));
     }
     let (label, action) = match step {
-        Step::Session => (words::NEXT_ARCS, Action::GoTo(Step::Arcs)),
+        Step::Session | Step::Capture => (words::NEXT_ARCS, Action::GoTo(Step::Arcs)),
         Step::Arcs => (words::NEXT_POSES, Action::GoTo(Step::Poses)),
         Step::Poses => (words::NEXT_COMPARE, Action::GoTo(Step::Compare)),
         Step::Compare => (words::NEXT_DIAGNOSIS, Action::GoTo(Step::Diagnosis)),

@@ -6,10 +6,11 @@ use crate::app::Workbench;
 use crate::session::samples;
 use crate::text::document::READ_ONLY;
 use crate::text::start::sample_lesson;
-use crate::text::{conventions, shell as words};
+use crate::text::{capture as capture_words, conventions, shell as words};
 
 use super::actions::Action;
 use super::persisted::{Persisted, ThemeChoice};
+use super::rail::Step;
 use super::{theme, widgets};
 
 /// Scales on offer.
@@ -62,6 +63,12 @@ fn menus(ui: &mut Ui, workbench: &Workbench, persisted: &mut Persisted, actions:
         item(ui, workbench, Action::Redo, actions);
         ui.separator();
         item(ui, workbench, Action::History, actions);
+    });
+    MenuButton::new(capture_words::MENU).ui(ui, |ui| {
+        item(ui, workbench, Action::GoTo(Step::Capture), actions);
+        ui.separator();
+        item(ui, workbench, Action::Practise, actions);
+        item(ui, workbench, Action::EndPractice, actions);
     });
     MenuButton::new(words::VIEW).ui(ui, |ui| {
         ui.label(theme::dim(ui, words::THEME));

@@ -12,7 +12,6 @@ pub struct Replay {
     trace: Trace,
     recorded: std::vec::IntoIter<StepSeen>,
     report: SearchReport,
-    previous_mm: Option<f64>,
     /// How it would have ended.
     stop: Option<(usize, SearchEnd)>,
 }
@@ -26,7 +25,6 @@ impl Replay {
             trace: Trace::new(settings, ball_radius_mm),
             recorded: recorded.into_iter(),
             report: SearchReport { sign: 1.0, ..SearchReport::default() },
-            previous_mm: None,
             stop: None,
         }
     }
@@ -37,21 +35,22 @@ impl Replay {
         self.stop.as_ref().map(|(idx, _)| *idx)
     }
 
-    /// Where in the state machine the capture belongs.
-    fn advance(&mut self, travelled_mm: f64) {
-        let way_mm = self.previous_mm.replace(travelled_mm).map_or(0.0, |previous| travelled_mm - previous);
-        // Without a way there is no change of it.
-        let has_turned = way_mm * self.report.sign < 0.0;
+    /// Where in the state machine the move to the next capture belongs.
+    fn phase_of_next(&mut self, from_mm: f64, next: Option<f64>) -> SearchPhase {
+        let Some(next_mm) = next else { return SearchPhase::Ended };
+        let has_turned = (next_mm - from_mm) * self.report.sign < 0.0;
         if has_turned {
             self.report.sign = -self.report.sign;
         }
-        self.report.phase = match self.report.phase {
-            SearchPhase::First if self.trace.num_captures() <= 1 => SearchPhase::First,
-            SearchPhase::First | SearchPhase::Probe if self.trace.grows().is_none() => SearchPhase::Probe,
-            _ if self.trace.beyond_peak_mm(self.report.sign).is_some() => SearchPhase::Pass,
-            _ if has_turned => SearchPhase::Reverse,
-            _ => SearchPhase::Climb,
-        };
+        if self.trace.grows().is_none() {
+            SearchPhase::Probe
+        } else if has_turned {
+            SearchPhase::Reverse
+        } else if self.trace.beyond_peak_mm(self.report.sign).is_some() {
+            SearchPhase::Pass
+        } else {
+            SearchPhase::Climb
+        }
     }
 }
 
@@ -62,19 +61,19 @@ impl Iterator for Replay {
         let seen = self.recorded.next()?;
         let travelled_mm = seen.travelled_mm;
         self.trace.push(travelled_mm, seen);
-        self.advance(travelled_mm);
+        let next_mm = self.recorded.as_slice().first().map(|next| next.travelled_mm);
+        self.report.phase = self.phase_of_next(travelled_mm, next_mm);
         if self.stop.is_none() {
             let end = self.trace.misfit().or_else(|| self.trace.found(&self.settings));
             self.stop = end.map(|end| (self.trace.num_captures() - 1, end));
         }
         self.trace.tell(&mut self.report);
-        if self.recorded.len() == 0 {
+        if next_mm.is_none() {
             let end = self.stop.as_ref().map(|(_, end)| end.clone());
             let extent_mm = self.report.points.iter().map(|point| point.travelled_mm.abs()).fold(0.0, f64::max);
             self.report.end = end
                 .or_else(|| self.trace.found_after_all(&self.settings))
                 .or(Some(SearchEnd::TravelExhausted { max_travel_mm: extent_mm }));
-            self.report.phase = SearchPhase::Ended;
         }
         Some(self.report.clone())
     }

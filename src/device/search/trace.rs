@@ -13,9 +13,9 @@ const OFF_PART: f64 = 0.01;
 /// ... and by this many standard deviations is no noise.
 const OFF_AT_STDS: f64 = 5.0;
 /// One section that is off may be dirt in the profile; so many are not.
-const MANY_OFF: usize = 3;
+const MANY_OFF: usize = 2;
 /// Sections on either side of the peak, at least, before it counts as passed well enough to stop.
-const NUM_BESIDE: usize = 2;
+const NUM_BESIDE: usize = 3;
 /// A peak that is known no better than this part of the radius is not known.
 const WORST_STD_PART: f64 = 0.02;
 /// Sections outside these parts of the ball's radius are none of a ball.
@@ -106,9 +106,14 @@ impl Trace {
         (beyond > 2.0 * curve.peak_std_mm).then_some(beyond)
     }
 
-    /// Whether enough sections lie beyond the peak in a direction.
+    /// Whether enough sections lie beyond the peak in a direction, ...
     pub fn is_covered(&self, sign: f64) -> bool {
         self.num_beyond(sign) >= NUM_BESIDE
+    }
+
+    /// ... or one more than that, as one at the peak itself may come to lie on either side.
+    pub fn is_well_covered(&self, sign: f64) -> bool {
+        self.num_beyond(sign) > NUM_BESIDE
     }
 
     fn num_beyond(&self, sign: f64) -> usize {
@@ -116,11 +121,13 @@ impl Trace {
         self.sections.iter().filter(|section| sign * (section.travelled_mm - curve.peak_mm) > 0.0).count()
     }
 
-    /// The first l ≥ R; or the largest, once the radius is smaller on either side of it by more than noise.
+    /// Not before R₂: the first l ≥ R; or the largest, once the radius is smaller on either side of it by more than noise.
     fn published_stop(&self) -> Option<usize> {
-        let newest = self.sections.last()?;
-        if newest.radius_mm >= self.known.ball_radius_mm {
-            return self.point_idx.last().copied();
+        if self.sections.len() < 2 {
+            return None;
+        }
+        if let Some(idx) = self.sections.iter().position(|section| section.radius_mm >= self.known.ball_radius_mm) {
+            return Some(self.point_idx[idx]);
         }
         let (largest_idx, largest) =
             self.sections.iter().enumerate().max_by(|(_, a), (_, b)| a.radius_mm.total_cmp(&b.radius_mm))?;

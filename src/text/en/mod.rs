@@ -1,6 +1,8 @@
 //! English.
 
 pub mod arcs;
+pub mod capture;
+pub mod capture_settings;
 pub mod cell;
 pub mod check;
 pub mod cli;

@@ -1,9 +1,9 @@
 //! Step 3: the profiles, the arcs found in them, and the radius against the step.
 
-mod curve;
+pub mod curve;
 mod list;
-mod model;
+pub mod model;
 mod panel;
-mod profile;
+pub mod profile;
 
 pub use panel::{ArcsState, show};

@@ -1,7 +1,7 @@
 //! What the arcs panel draws, made without egui from the session and what was measured in it.
 
 use crate::app::Results;
-use crate::calibrate::{self, Method, Sweep, solution_of};
+use crate::calibrate::{self, Method, Sweep, SweepPoint, solution_of};
 use crate::fit::{ArcFit, Circle, CircleMethod, PointClass};
 use crate::geometry::Profile;
 use crate::session::{Reading, Session, Target};
@@ -246,15 +246,58 @@ pub const fn ball_radius_mm(session: &Session) -> Option<f64> {
     }
 }
 
-/// The fitted curve l = √(R² − (travel − peak)²) as points to draw; empty beyond the ball.
+/// Where a fitted curve has its peak: l² = R² − c (travel − peak)².
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Peak {
+    /// The peak along the travel, mm.
+    pub travel_mm: f64,
+    /// Its σ, mm.
+    pub std_mm: f64,
+    /// The factor c: 1 for a travel along the laser's normal.
+    pub curvature: f64,
+}
+
+impl Peak {
+    /// The radius of the section at a place of the travel, mm; 0 beyond the ball.
+    #[must_use]
+    pub fn section_radius_mm(&self, travel_mm: f64, ball_radius_mm: f64) -> f64 {
+        let offset_mm = travel_mm - self.travel_mm;
+        (ball_radius_mm * ball_radius_mm - self.curvature * offset_mm * offset_mm).max(0.0).sqrt()
+    }
+}
+
+/// The radius against the step as it is drawn, of an evaluated sweep or of a search under way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Curve<'a> {
+    /// The steps with an arc.
+    pub points: &'a [SweepPoint],
+    /// The curve through them, once there is one.
+    pub peak: Option<Peak>,
+    /// Where the published rule stops.
+    pub published_stop_mm: Option<f64>,
+}
+
+impl<'a> Curve<'a> {
+    /// The curve of an evaluated sweep.
+    #[must_use]
+    pub fn of(sweep: &'a Sweep) -> Self {
+        Self {
+            points: &sweep.points,
+            peak: Some(Peak { travel_mm: sweep.peak_mm, std_mm: sweep.peak_std_mm, curvature: 1.0 }),
+            published_stop_mm: Some(sweep.published_stop_mm),
+        }
+    }
+}
+
+/// The fitted curve as points to draw; empty beyond the ball.
 #[must_use]
-pub fn curve_points(peak_mm: f64, ball_radius_mm: f64, travel_mm: [f64; 2]) -> Vec<[f64; 2]> {
+pub fn curve_points(peak: &Peak, ball_radius_mm: f64, travel_mm: [f64; 2]) -> Vec<[f64; 2]> {
     const NUM_POINTS: u32 = 160;
     (0..=NUM_POINTS)
         .filter_map(|idx| {
             let travel = travel_mm[0] + (travel_mm[1] - travel_mm[0]) * f64::from(idx) / f64::from(NUM_POINTS);
-            let squared = ball_radius_mm * ball_radius_mm - (travel - peak_mm) * (travel - peak_mm);
-            (squared >= 0.0).then(|| [travel, squared.sqrt()])
+            let radius = peak.section_radius_mm(travel, ball_radius_mm);
+            (radius > 0.0).then_some([travel, radius])
         })
         .collect()
 }

@@ -71,7 +71,8 @@ fn a_refused_profile_keeps_its_points_and_says_why() {
 
 #[test]
 fn the_curve_ends_where_the_ball_does() {
-    let points = curve_points(5.0, 10.0, [-10.0, 20.0]);
+    let peak = Peak { travel_mm: 5.0, std_mm: 0.01, curvature: 1.0 };
+    let points = curve_points(&peak, 10.0, [-10.0, 20.0]);
     assert!(points.iter().all(|[travel, radius]| (travel - 5.0).abs() <= 10.0 && *radius <= 10.0));
     let top = points.iter().map(|[_, radius]| *radius).fold(0.0, f64::max);
     assert!(top > 9.99);

@@ -404,9 +404,15 @@ fn curve_card(
                 empty_card(ui, sentence, None);
                 return;
             };
-            let emphasised = hovered_in_list;
-            let response =
-                curve::show(ui, sweep, ball_radius_mm, selection.capture_idx, emphasised, &mut state.is_curve_fitted);
+            let look = curve::CurveLook {
+                name: "arcs",
+                ball_radius_mm,
+                x_title: text::TRAVEL_AXIS,
+                selected_capture: Some(selection.capture_idx),
+                hovered_capture: hovered_in_list,
+                has_residuals: true,
+            };
+            let response = curve::show(ui, &model::Curve::of(sweep), &look, &mut state.is_curve_fitted);
             state.hovered_capture = response.hovered.or(hovered_in_list);
             if let Some(capture_idx) = response.clicked {
                 selection.capture_idx = capture_idx;

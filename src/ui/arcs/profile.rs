@@ -13,6 +13,8 @@ use super::model::{ProfileModel, SectionModel};
 
 /// The part of the height that the profile takes; its residuals get the rest.
 const PROFILE_PART: f32 = 0.62;
+/// Height of a plot that has room for the whole title of its z axis, points.
+const TITLE_NEEDS: f32 = 200.0;
 /// Radius of a point of a profile, points.
 const POINT_RADIUS: f32 = 1.6;
 /// Points closer than this, points on the screen, are painted once.
@@ -25,13 +27,8 @@ pub fn show(ui: &mut Ui, model: &ProfileModel, shows_whole: bool, is_fitted: &mu
     let height = ui.available_height();
     let has_section = model.section.is_ok();
     let profile_height = if has_section { (height * PROFILE_PART).round() } else { height };
-    let mut chart = Chart::new(
-        Id::unique("arcs profile"),
-        text::X_AXIS,
-        text::Z_AXIS,
-        profile_height,
-        profile_extent(model, shows_whole),
-    );
+    let mut chart =
+        Chart::new(Id::unique("arcs profile"), text::X_AXIS, text::Z_AXIS, profile_height, extent(model, shows_whole));
     chart.invert_y = model.z_grows_away;
     chart.has_equal_scales = true;
     chart.x_group = Some(group);
@@ -56,6 +53,21 @@ pub fn show(ui: &mut Ui, model: &ProfileModel, shows_whole: bool, is_fitted: &mu
             readout(ui, &canvas, &strip_canvas, model);
         }
         Err(reason) => refusal(ui, &canvas, reason),
+    }
+}
+
+/// Shows the profile alone, in a view that the caller chooses; `name` tells its plot from others.
+pub fn show_alone(ui: &mut Ui, name: &'static str, model: &ProfileModel, extent: Extent, is_fitted: &mut bool) {
+    charts::legend(ui, &entries(ui, model));
+    let height = ui.available_height();
+    let z_title = if height < TITLE_NEEDS { text::Z_AXIS_SHORT } else { text::Z_AXIS };
+    let mut chart = Chart::new(Id::unique(name), text::X_AXIS, z_title, height, extent);
+    chart.invert_y = model.z_grows_away;
+    chart.has_equal_scales = true;
+    let canvas = chart.show(ui, is_fitted);
+    paint_profile(ui, &canvas, model);
+    if let Err(reason) = &model.section {
+        refusal(ui, &canvas, reason);
     }
 }
 
@@ -93,7 +105,8 @@ fn entries(ui: &Ui, model: &ProfileModel) -> Vec<LegendEntry> {
 
 /// The near half of the ball with some room towards the sensor; all points as well where `shows_whole`, and only them
 /// without a section.
-fn profile_extent(model: &ProfileModel, shows_whole: bool) -> Extent {
+#[must_use]
+pub fn extent(model: &ProfileModel, shows_whole: bool) -> Extent {
     let mut extent = Extent::NOTHING;
     if let Ok(SectionModel { circle, .. }) = &model.section {
         let reach_mm = model.ball_radius_mm.unwrap_or(circle.radius_mm).max(circle.radius_mm);
@@ -209,6 +222,7 @@ fn refusal(ui: &mut Ui, canvas: &Canvas, reason: &str) {
 }
 
 /// The shift of another fit against the robust one, in words.
+#[must_use]
 pub fn shift_words(section: &SectionModel) -> String {
     let [dx, dz, dl] = section.shift_um.map(|shift| widgets::signed(shift, 2));
     text::fit_shift(&dx, &dz, &dl)

@@ -1,4 +1,4 @@
-//! Step 4: the methods side by side, their errors, and how their results differ.
+//! Step 5: the methods side by side, their errors, and how their results differ.
 
 mod bars;
 mod cards;

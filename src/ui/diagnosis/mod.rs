@@ -1,4 +1,4 @@
-//! Step 5: what is wrong and what mends it, how sure the result is, and where to measure next.
+//! Step 6: what is wrong and what mends it, how sure the result is, and where to measure next.
 
 mod accuracy;
 mod bars;
@@ -8,7 +8,7 @@ mod panel;
 mod plan;
 mod plots;
 mod readings;
-mod triad;
+pub mod triad;
 mod validation;
 
 pub use model::{Seen, Shown, View};

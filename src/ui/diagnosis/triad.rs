@@ -64,7 +64,8 @@ fn rotation_bar(ui: &mut Ui, name: &str, rotation_deg: f64, most_deg: f64) {
 
 /// Seen from the front, the right and above, so that no axis hides another.
 #[expect(clippy::cast_possible_truncation, reason = "screen coordinates")]
-fn projected(point: Vec3) -> Vec2 {
+#[must_use]
+pub fn projected(point: Vec3) -> Vec2 {
     let (x, y, z) = (point.x as f32, point.y as f32, point.z as f32);
     vec2(-0.62 * x + 0.90 * y, 0.45 * x + 0.16 * y - 0.92 * z)
 }

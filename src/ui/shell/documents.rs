@@ -11,7 +11,7 @@ use crate::ui::file_dialog::{Answer, Purpose};
 use crate::ui::rail::Step;
 use crate::ui::{theme, widgets};
 
-use super::{Pending, Shell};
+use super::{Pending, Shell, live_cell};
 
 /// Seconds between two looks at the file while frames come.
 const LOOK_SECONDS: f64 = 5.0;
@@ -31,7 +31,7 @@ impl Shell {
                 | Command::Recover(_)
                 | Command::CloseDocument
                 | Command::FinishImport(ImportInto::NewSession { .. })
-        );
+        ) || live_cell::is_practise(&command);
         if replaces && self.would_lose_something() {
             self.unsaved_question = Some(Pending::Command(command));
             return;
@@ -58,7 +58,11 @@ impl Shell {
             }
             self.step = Step::Session;
         }
-        if matches!(command, Command::NewSession(_) | Command::FinishImport(_)) {
+        let begins_a_capture = matches!(command, Command::NewSession(_)) && self.step == Step::Capture;
+        if live_cell::is_practise(&command) {
+            self.step = Step::Capture;
+        }
+        if matches!(command, Command::NewSession(_) | Command::FinishImport(_)) && !begins_a_capture {
             // The next thing to do there: look at the poses, or import, paste and add some.
             self.step = Step::Poses;
         }

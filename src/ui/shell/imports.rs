@@ -31,6 +31,11 @@ impl Shell {
             Purpose::Save => self.apply_to_each(paths, Command::SaveAs),
             Purpose::ExportPoses => self.apply_to_each(paths, Command::ExportPoses),
             Purpose::ExportProfiles => self.apply_to_each(paths, Command::ExportProfiles),
+            Purpose::WatchedFolder => {
+                if let Some(folder) = paths.into_iter().next() {
+                    self.persisted.cell.watch(folder);
+                }
+            }
         }
     }
 

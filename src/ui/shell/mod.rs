@@ -2,18 +2,21 @@
 
 mod documents;
 mod imports;
+mod live_cell;
 mod news;
 
 use std::sync::Arc;
 
 use egui::{CentralPanel, Context, Frame, Margin, Panel, Stroke, Ui, ViewportCommand};
 
+use crate::app::cell::CellCommand;
 use crate::app::jobs::Wake;
 use crate::app::{Command, OnDisk, Workbench};
 use crate::text::shell as words;
 
 use super::actions::{self, Action};
 use super::arcs::ArcsState;
+use super::capture::CaptureState;
 use super::compare::CompareState;
 use super::diagnosis::DiagnosisState;
 use super::dialogs::SavePath;
@@ -25,7 +28,8 @@ use super::poses::panel::PosesState;
 use super::rail::{self, Step};
 use super::start::panel::StartState;
 use super::{
-    PanelContext, Selection, arcs, compare, diagnosis, inspector, poses, start, status, theme, top_bar, widgets,
+    PanelContext, Selection, arcs, capture, compare, diagnosis, inspector, poses, start, status, theme, top_bar,
+    widgets,
 };
 
 /// Height of the bar at the top, points.
@@ -62,6 +66,9 @@ pub struct Shell {
     start: StartState,
     poses: PosesState,
     arcs: ArcsState,
+    capture: CaptureState,
+    /// Whether the cell was the simulated one in the last frame.
+    was_practice: bool,
     compare: CompareState,
     diagnosis: DiagnosisState,
     import: ImportState,
@@ -98,14 +105,19 @@ impl Shell {
         ctx.set_theme(persisted.theme.preference());
         ctx.set_zoom_factor(persisted.scale);
         let applied_scale = persisted.scale;
+        let mut workbench = Workbench::new(Arc::clone(&wake));
+        let settings = Box::new(persisted.cell.settings);
+        workbench.apply(Command::Cell(Box::new(CellCommand::SetSettings(settings))));
         Self {
-            workbench: Workbench::new(Arc::clone(&wake)),
+            workbench,
             wake,
             step: Step::default(),
             selection: Selection::default(),
             start,
             poses: PosesState::default(),
             arcs: ArcsState::default(),
+            capture: CaptureState::default(),
+            was_practice: false,
             compare: CompareState::default(),
             diagnosis: DiagnosisState::default(),
             import: ImportState::default(),
@@ -182,6 +194,10 @@ impl Shell {
     /// Draws one frame and carries out what the user asked for in it.
     pub fn ui(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
+        // Before anything else, and whatever else has the keyboard.
+        if live_cell::takes_stop_key(&ctx, self.workbench.cell()) {
+            self.workbench.apply(live_cell::stop());
+        }
         // What is typed while a question waits is its answer, and nothing for what lies below.
         let is_asking = self.is_asking();
         let mut actions = if is_asking { Vec::new() } else { actions::pressed(&ctx, &self.workbench) };
@@ -208,6 +224,7 @@ impl Shell {
         self.history.show(&ctx, &self.workbench, &mut commands);
         import::show(&ctx, &self.workbench, &mut self.import, &mut self.persisted.imports, &mut commands);
         self.questions(&ctx);
+        self.stop_first(&mut commands);
         // What was typed comes first: an action in the same frame is about it.
         for command in std::mem::take(&mut commands) {
             self.request(command);
@@ -221,6 +238,7 @@ impl Shell {
         if std::mem::take(&mut self.is_closing_again) {
             ctx.send_viewport_cmd(ViewportCommand::Close);
         }
+        self.remember_cell();
         self.apply_looks(&ctx);
     }
 
@@ -245,7 +263,9 @@ impl Shell {
             let num_pose_remarks = self.poses.num_remarks(&self.workbench, self.selection.method);
             rail::show(ui, &self.workbench, &self.selection, num_pose_remarks, self.step, actions);
         });
-        if self.persisted.inspector_open && self.workbench.document().is_some() {
+        // The live cell needs the room, and shows what there is to inspect itself.
+        let has_inspector = self.persisted.inspector_open && self.step != Step::Capture;
+        if has_inspector && self.workbench.document().is_some() {
             let beside = surface.inner_margin(Margin { left: 16, right: 8, top: 0, bottom: 0 });
             Panel::right("inspector").resizable(false).exact_size(INSPECTOR_WIDTH).frame(beside).show(ui, |ui| {
                 let mut context =
@@ -258,7 +278,7 @@ impl Shell {
     fn center(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, commands: &mut Vec<Command>) {
         let canvas = Frame::new().fill(theme::palette(ui).canvas).inner_margin(12);
         CentralPanel::default().frame(canvas).show(ui, |ui| {
-            if self.workbench.document().is_none() && self.step != Step::Session {
+            if self.workbench.document().is_none() && !matches!(self.step, Step::Session | Step::Capture) {
                 empty_state(ui, actions);
                 return;
             }
@@ -267,6 +287,9 @@ impl Shell {
             match self.step {
                 Step::Session => {
                     start::panel::show(ui, &mut context, &mut self.start, &mut self.persisted.recent_files);
+                }
+                Step::Capture => {
+                    capture::show(ui, &mut context, &mut self.persisted.cell, &mut self.capture);
                 }
                 Step::Poses => poses::panel::show(ui, &mut context, &mut self.poses),
                 Step::Arcs => arcs::show(ui, &mut context, &mut self.arcs),
@@ -297,6 +320,9 @@ impl Shell {
             Action::AddSession => self.ask_for_paths(Purpose::AddSession),
             Action::ExportPoses => self.ask_for_paths(Purpose::ExportPoses),
             Action::ExportProfiles => self.ask_for_paths(Purpose::ExportProfiles),
+            Action::ChooseWatchedFolder => self.ask_for_paths(Purpose::WatchedFolder),
+            Action::Practise => commands.push(Command::Cell(Box::new(CellCommand::Practise))),
+            Action::EndPractice => commands.push(Command::Cell(Box::new(CellCommand::EndPractice))),
             Action::Paste => self.ask_for_clipboard(ctx),
             Action::OpenSample(sample_idx) => commands.push(Command::OpenSample(sample_idx)),
             Action::Save => self.save(),

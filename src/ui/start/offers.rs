@@ -7,8 +7,11 @@ use egui::{Align, Button, Frame, Label, Layout, RichText, Role, TextEdit, Ui, Wi
 
 use crate::app::{Command, Recoverable};
 use crate::session::{Edit, Session, SetupField, Target, table::parse_number};
+use crate::text::capture as capture_words;
 use crate::text::document as document_words;
 use crate::text::start as words;
+use crate::ui::actions::Action;
+use crate::ui::rail::Step;
 use crate::ui::widgets::{card, primary_button};
 use crate::ui::{PanelContext, theme};
 
@@ -92,6 +95,30 @@ fn offer(ui: &mut Ui, idx: usize, recoverable: &Recoverable, commands: &mut Vec<
                         ui.add(Label::new(RichText::new(format!("✖ {error}")).color(color)).wrap());
                     }
                 }
+            });
+        });
+    });
+}
+
+/// Draws the card of the live cell: the ways to measure instead of opening what was measured.
+pub fn cell(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let nothing_at_right = |_: &mut Ui| {};
+    card(ui, "", nothing_at_right, |ui| {
+        Frame::new().inner_margin(12).show(ui, |ui| {
+            ui.horizontal(|ui| {
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    if ui.button(capture_words::CONNECT_CELL).clicked() {
+                        context.actions.push(Action::GoTo(Step::Capture));
+                    }
+                    let practise = ui.button(capture_words::PRACTISE).on_hover_text(capture_words::PRACTISE_HINT);
+                    if practise.clicked() {
+                        context.actions.push(Action::Practise);
+                    }
+                    ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                        ui.label(theme::strong(capture_words::CELL));
+                        ui.add(Label::new(theme::dim(ui, capture_words::CELL_LEAD)).truncate());
+                    });
+                });
             });
         });
     });

@@ -119,6 +119,8 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut StartState,
                 ui.label(theme::dim(ui, words::LEAD));
                 ui.add_space(16.0);
                 offers::recovery(ui, context, &mut state.offers);
+                offers::cell(ui, context);
+                ui.add_space(theme::GAP);
                 open_card(ui, words::OPEN_FILE, context, state, recent_files);
                 ui.add_space(20.0);
                 ui.label(theme::strong(words::SAMPLES));

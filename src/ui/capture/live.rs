@@ -1,0 +1,152 @@
+//! What comes from the profiler, with the arc in it, and the curve that the search draws.
+
+use std::rc::Rc;
+use std::sync::Arc;
+
+use egui::{RichText, Ui, UiBuilder, vec2};
+
+use crate::app::cell::LiveProfile;
+use crate::calibrate::Reading;
+use crate::fit::CircleMethod;
+use crate::text::capture as words;
+use crate::ui::arcs::curve::{self, CurveLook};
+use crate::ui::arcs::model::{Curve, ProfileModel, profile_model};
+use crate::ui::arcs::profile;
+use crate::ui::charts::Extent;
+use crate::ui::figures::with_std;
+use crate::ui::theme;
+use crate::ui::widgets::{card_with_height, fixed, nothing};
+
+use super::model::{SearchCurve, search_curve, steady};
+use super::panel::Desk;
+
+/// The part of the width that the profile takes.
+const PROFILE_PART: f32 = 0.54;
+
+/// Shows both side by side.
+pub fn show(ui: &mut Ui, height: f32, desk: &mut Desk<'_>) {
+    let area = ui.available_rect_before_wrap();
+    let area = area.with_max_y(area.top() + height);
+    let (left, right) = area.split_left_right_at_x(area.left() + (area.width() * PROFILE_PART).round());
+    let mut left = ui.new_child(UiBuilder::new().max_rect(left));
+    live_card(&mut left, height, desk);
+    let mut right = ui.new_child(UiBuilder::new().max_rect(right.with_min_x(right.left() + theme::GAP)));
+    curve_card(&mut right, height, desk);
+    ui.allocate_rect(area, egui::Sense::hover());
+}
+
+fn live_card(ui: &mut Ui, height: f32, desk: &mut Desk<'_>) {
+    let cell = desk.view.cell;
+    let is_fitted = desk.state.is_profile_fitted;
+    let mut fits = false;
+    let right = |ui: &mut Ui| {
+        ui.spacing_mut().interact_size.y = 22.0;
+        ui.spacing_mut().button_padding = vec2(8.0, 2.0);
+        if cell.live.is_some() && !is_fitted {
+            fits = ui.button(words::FIT_VIEW).on_hover_text(words::FIT_VIEW_HINT).clicked();
+        }
+        if let Some(live) = &cell.live {
+            ui.label(theme::dim(ui, words::rate(&fixed(live.rate_hz, 0))));
+        }
+    };
+    let ball_radius_mm = desk.view.ball_radius_mm();
+    card_with_height(ui, words::LIVE, height, right, |ui| {
+        let Some(live) = &cell.live else {
+            let watched = cell.watched_folder.as_ref().map(|folder| folder.display().to_string());
+            return match (&cell.sensor.setup, watched) {
+                (Some(_), Some(folder)) => nothing(ui, &words::live_nothing_in(&folder)),
+                (Some(_), None) => nothing(ui, words::LIVE_NOTHING),
+                (None, _) => nothing(ui, words::LIVE_OFF),
+            };
+        };
+        let model = desk.state.profile_of(live, ball_radius_mm);
+        arc_line(ui, live);
+        let extent = profile::extent(&model, true);
+        let steady = steady(desk.state.view, [extent.x, extent.y]);
+        desk.state.view = Some(steady);
+        let extent = Extent { x: steady[0], y: steady[1] };
+        profile::show_alone(ui, "live profile", &model, extent, &mut desk.state.is_profile_fitted);
+    });
+    if fits {
+        desk.state.is_profile_fitted = true;
+    }
+}
+
+/// Radius, angle and noise, in the line above the plot; the centre stands in it.
+fn arc_line(ui: &mut Ui, live: &LiveProfile) {
+    egui::Frame::new().inner_margin(egui::Margin { left: 12, right: 12, top: 6, bottom: 0 }).show(ui, |ui| {
+        let palette = theme::palette(ui);
+        let (line, color) = match &live.arc {
+            Ok(arc) => {
+                let std_mm = arc.std_mm();
+                let radius = with_std(arc.circle.radius_mm, std_mm[2]);
+                let angle_deg = fixed(arc.angle_rad.to_degrees(), 0);
+                (words::arc(&radius, &angle_deg, &fixed(arc.point_std_mm * 1000.0, 1)), palette.text)
+            }
+            Err(_) => (format!("! {}", words::NO_ARC), palette.warn),
+        };
+        let line = RichText::new(line).font(theme::number_font()).color(color);
+        ui.add(egui::Label::new(line).truncate());
+    });
+}
+
+impl super::panel::CaptureState {
+    /// Made once a profile: frames come more often than profiles.
+    fn profile_of(&mut self, live: &LiveProfile, ball_radius_mm: Option<f64>) -> Rc<ProfileModel> {
+        let profile = &live.reading.profile;
+        if let Some((known, has_arc, model)) = &self.profile
+            && Arc::ptr_eq(known, profile)
+            && *has_arc == live.arc.is_ok()
+            && model.ball_radius_mm == ball_radius_mm
+        {
+            return Rc::clone(model);
+        }
+        let reading = match &live.arc {
+            Ok(arc) => Reading::Arc(Arc::clone(arc)),
+            Err(refusal) => Reading::Refused(refusal.clone()),
+        };
+        let model = Rc::new(profile_model(profile, Some(&reading), ball_radius_mm, CircleMethod::Robust));
+        self.profile = Some((Arc::clone(profile), live.arc.is_ok(), Rc::clone(&model)));
+        model
+    }
+
+    fn curve_of(&mut self, search: &Arc<crate::device::SearchReport>, ball_radius_mm: f64) -> Rc<SearchCurve> {
+        if let Some((known, curve)) = &self.curve
+            && Arc::ptr_eq(known, search)
+        {
+            return Rc::clone(curve);
+        }
+        let curve = Rc::new(search_curve(search, ball_radius_mm));
+        self.curve = Some((Arc::clone(search), Rc::clone(&curve)));
+        curve
+    }
+}
+
+fn curve_card(ui: &mut Ui, height: f32, desk: &mut Desk<'_>) {
+    let ball_radius_mm = desk.view.ball_radius_mm();
+    card_with_height(
+        ui,
+        words::RADIUS_AGAINST_STEP,
+        height,
+        |_| {},
+        |ui| {
+            let (Some(search), Some(ball_radius_mm)) = (&desk.view.cell.search, ball_radius_mm) else {
+                return nothing(ui, words::NO_SEARCH);
+            };
+            let shown = desk.state.curve_of(search, ball_radius_mm);
+            if shown.points.is_empty() {
+                return nothing(ui, words::NO_STEP_YET);
+            }
+            let look = CurveLook {
+                name: "live search",
+                ball_radius_mm,
+                x_title: words::TRAVEL_AXIS,
+                selected_capture: shown.points.last().map(|point| point.capture_idx),
+                hovered_capture: None,
+                has_residuals: false,
+            };
+            let curve = Curve { points: &shown.points, peak: shown.peak, published_stop_mm: shown.published_stop_mm };
+            curve::show(ui, &curve, &look, &mut desk.state.is_curve_fitted);
+        },
+    );
+}

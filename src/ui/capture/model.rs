@@ -1,0 +1,546 @@
+//! What the capture panel shows and offers, made without egui from the live cell and the open session.
+
+use crate::app::Workbench;
+use crate::app::cell::{Activity, CellCommand, CellSettings, CellView};
+use crate::calibrate::SweepPoint;
+use crate::device::search::SearchPoint;
+use crate::device::{LinkState, Readiness, RobotReport, SearchPhase, SearchReport};
+use crate::geometry::{Base, Flange, PoseNotation, Transform};
+use crate::session::{Reading, Session};
+use crate::text::capture as words;
+use crate::text::capture_settings::problem;
+use crate::ui::arcs::model::{Peak, ball_radius_mm};
+use crate::ui::widgets::fixed;
+
+use super::memory::CellMemory;
+
+/// What the panel is a picture of.
+#[derive(Clone, Copy)]
+pub struct View<'a> {
+    /// The live cell.
+    pub cell: &'a CellView,
+    /// The open session.
+    pub session: Option<&'a Session>,
+    /// Whether some method has a solution, which knows the mounting better than a drawing.
+    pub has_solution: bool,
+}
+
+impl<'a> View<'a> {
+    /// The view of a workbench.
+    #[must_use]
+    pub fn of(workbench: &'a Workbench) -> Self {
+        let has_solution =
+            workbench.results().is_some_and(|results| results.methods.iter().any(|method| method.outcome.is_ok()));
+        Self {
+            cell: workbench.cell(),
+            session: workbench.document().map(|document| document.session.as_ref()),
+            has_solution,
+        }
+    }
+
+    /// Radius of the session's ball, mm; `None` without a session or with another target.
+    #[must_use]
+    pub fn ball_radius_mm(&self) -> Option<f64> {
+        self.session.and_then(ball_radius_mm)
+    }
+
+    /// Stations of the session.
+    #[must_use]
+    pub fn num_stations(&self) -> usize {
+        self.session.map_or(0, |session| session.stations.len())
+    }
+
+    /// How the session's robot writes its poses.
+    #[must_use]
+    pub fn notation(&self) -> PoseNotation {
+        self.session.map_or_else(PoseNotation::default, |session| session.robot.notation)
+    }
+
+    /// Whether the next stations can be proposed.
+    #[must_use]
+    pub const fn knows_mounting(&self) -> bool {
+        self.has_solution || self.cell.settings.mounting.is_some()
+    }
+
+    fn has_profiles(&self) -> bool {
+        let stations = self.session.map_or(&[][..], |session| &session.stations);
+        stations
+            .iter()
+            .flat_map(|station| &station.captures)
+            .any(|capture| matches!(capture.reading, Reading::Profile(_)))
+    }
+}
+
+/// Whether something is under way that stop would end.
+#[must_use]
+pub fn is_running(cell: &CellView) -> bool {
+    cell.is_busy() || cell.run.is_some_and(|run| run.is_paused || run.is_asking)
+}
+
+/// Whether a run has measured all that it was to.
+#[must_use]
+pub fn is_run_over(cell: &CellView) -> bool {
+    !is_running(cell) && cell.run.is_some_and(|run| run.num_done >= run.num_stations)
+}
+
+/// Something that a button of the panel asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Deed {
+    /// A command for the cell.
+    Cell(CellCommand),
+    /// A session for the ball of the radius in the field.
+    NewSession,
+    /// To see the settings of the mounting.
+    ShowMounting,
+    /// To go to the comparison.
+    Compare,
+}
+
+/// What to do next, in a sentence, with at most one button.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Next {
+    /// The sentence.
+    pub sentence: String,
+    /// What the primary button says and does.
+    pub button: Option<(&'static str, Deed)>,
+}
+
+impl Next {
+    fn wait(sentence: impl Into<String>) -> Self {
+        Self { sentence: sentence.into(), button: None }
+    }
+
+    fn offer(sentence: &str, label: &'static str, deed: Deed) -> Self {
+        Self { sentence: sentence.to_owned(), button: Some((label, deed)) }
+    }
+
+    fn command(sentence: &str, label: &'static str, command: CellCommand) -> Self {
+        Self::offer(sentence, label, Deed::Cell(command))
+    }
+}
+
+/// The one obvious next thing at this moment: for an operator in gloves.
+#[must_use]
+pub fn next(view: &View<'_>, memory: &CellMemory) -> Next {
+    let cell = view.cell;
+    if let Some(next) = next_while_running(view).or_else(|| next_connection(view, memory)) {
+        return next;
+    }
+    if is_run_over(cell) && cell.proposal.is_none() {
+        return Next::offer(words::now::COMPARE, words::COMPARE, Deed::Compare);
+    }
+    let Some(radius_mm) = view.ball_radius_mm() else {
+        let sentence = if view.session.is_some() { words::now::OTHER_TARGET } else { words::now::SESSION };
+        return Next::offer(sentence, words::NEW_SESSION, Deed::NewSession);
+    };
+    let Some(live) = &cell.live else { return Next::wait(words::now::PROFILE) };
+    let readiness = cell.robot.latest.as_ref().map(|report| &report.readiness);
+    if let Some(Readiness::NotReady { found, remedy }) = readiness {
+        return Next::wait(words::not_ready(found, remedy));
+    }
+    if !problems(&cell.settings, radius_mm, cell.robot.latest.as_ref()).is_empty() {
+        return Next::wait(words::now::SETTINGS);
+    }
+    if let Some(proposal) = &cell.proposal {
+        return match (&proposal.refusal, cell.is_armed) {
+            (_, false) => Next::command(words::now::ARM_FOR_PROPOSAL, words::ARM, CellCommand::Arm(true)),
+            (None, true) => Next::command(words::now::ACCEPT, words::ACCEPT, CellCommand::AcceptProposal),
+            (Some(_), true) => Next::command(words::now::SKIP, words::ANOTHER, CellCommand::SkipProposal),
+        };
+    }
+    if live.arc.is_err() {
+        return Next::wait(words::now::JOG);
+    }
+    if readiness == Some(&Readiness::ReadOnly) {
+        return Next::command(words::now::CAPTURE, words::CAPTURE, CellCommand::CaptureStation);
+    }
+    if view.num_stations() > 0 && !view.knows_mounting() {
+        return Next::offer(words::now::MOUNT, words::SET_MOUNTING, Deed::ShowMounting);
+    }
+    if !cell.is_armed {
+        return Next::command(words::now::ARM, words::ARM, CellCommand::Arm(true));
+    }
+    if view.knows_mounting() {
+        let num_stations = memory.num_stations.0;
+        return Next::command(words::now::RUN, words::START_RUN, CellCommand::StartRun { num_stations });
+    }
+    Next::command(words::now::FIND, words::FIND, CellCommand::FindLargestArc)
+}
+
+fn next_while_running(view: &View<'_>) -> Option<Next> {
+    let cell = view.cell;
+    if let Some(replay) = cell.replay {
+        if replay.is_over {
+            return Some(Next::command(words::REPLAY_OVER, words::END_REPLAY, CellCommand::EndReplay));
+        }
+        return Some(Next::wait(replay_words(view).unwrap_or_default()));
+    }
+    if let Some(run) = cell.run {
+        if run.is_asking {
+            return Some(Next::command(words::now::ACCEPT, words::ACCEPT, CellCommand::AcceptProposal));
+        }
+        if run.is_paused && !cell.is_busy() {
+            return Some(Next::command(words::now::RESUME, words::RESUME, CellCommand::ResumeRun));
+        }
+    }
+    Some(Next::wait(activity(cell.activity)?))
+}
+
+const fn activity(activity: Activity) -> Option<&'static str> {
+    match activity {
+        Activity::Idle => None,
+        Activity::Moving => Some(words::MOVING),
+        Activity::Settling => Some(words::SETTLING),
+        Activity::Thinking => Some(words::THINKING),
+        Activity::Stopping => Some(words::STOPPING),
+    }
+}
+
+/// Where the replay is, in words.
+#[must_use]
+pub fn replay_words(view: &View<'_>) -> Option<String> {
+    let replay = view.cell.replay?;
+    let station = view.session?.stations.get(replay.station_idx)?;
+    Some(words::replaying(&station.label, replay.capture_idx + 1, station.captures.len()))
+}
+
+fn next_connection(view: &View<'_>, memory: &CellMemory) -> Option<Next> {
+    let cell = view.cell;
+    let (robot, sensor) = (&cell.robot.state, &cell.sensor.state);
+    for state in [robot, sensor] {
+        if let LinkState::Failed { error, .. } = state {
+            return Some(Next::wait(error.to_string()));
+        }
+    }
+    if [robot, sensor].into_iter().any(|state| *state == LinkState::Connecting) {
+        return Some(Next::wait(words::now::CONNECTING));
+    }
+    if *robot == LinkState::Off {
+        return Some(match memory.robot_to_connect() {
+            Some(setup) => {
+                Next::command(words::now::CONNECT_ROBOT, words::CONNECT_ROBOT, CellCommand::ConnectRobot(setup))
+            }
+            None if *sensor == LinkState::Off => {
+                Next::command(words::now::BEGIN, words::PRACTISE, CellCommand::Practise)
+            }
+            None => Next::wait(words::now::ENTER_ROBOT),
+        });
+    }
+    if *sensor == LinkState::Off {
+        return Some(memory.sensor_to_connect().map_or_else(
+            || Next::wait(words::now::ENTER_PROFILER),
+            |setup| {
+                let command = CellCommand::ConnectSensor(setup);
+                Next::command(words::now::CONNECT_PROFILER, words::CONNECT_PROFILER, command)
+            },
+        ));
+    }
+    None
+}
+
+/// Why a command cannot be given now; `None` if it can.
+#[must_use]
+pub fn refusal(view: &View<'_>, command: &CellCommand) -> Option<&'static str> {
+    let cell = view.cell;
+    let moves =
+        matches!(command, CellCommand::FindLargestArc | CellCommand::AcceptProposal | CellCommand::StartRun { .. });
+    let captures = moves || *command == CellCommand::CaptureStation;
+    let proposes = matches!(command, CellCommand::ProposeStation | CellCommand::SkipProposal);
+    let is_asked = *command == CellCommand::AcceptProposal || proposes;
+    let is_waiting = cell.run.is_some_and(|run| run.is_asking);
+    if *command == CellCommand::Arm(true) {
+        return refusal_to_move(cell);
+    }
+    if *command == CellCommand::StartReplay {
+        return (if is_running(cell) { Some(words::ROUTINE_RUNS) } else { None })
+            .or_else(|| (!view.has_profiles()).then_some(words::NO_PROFILES));
+    }
+    if !(captures || proposes) {
+        return None;
+    }
+    if cell.replay.is_some() {
+        return Some(words::REPLAY_RUNS);
+    }
+    if is_running(cell) && !(is_asked && is_waiting) {
+        return Some(words::ROUTINE_RUNS);
+    }
+    if cell.robot.state != LinkState::Ready {
+        return Some(words::NO_ROBOT);
+    }
+    if cell.sensor.state != LinkState::Ready && !proposes {
+        return Some(words::NO_PROFILER);
+    }
+    let Some(radius_mm) = view.ball_radius_mm() else { return Some(words::NO_BALL_SESSION) };
+    if moves && !problems(&cell.settings, radius_mm, cell.robot.latest.as_ref()).is_empty() {
+        return Some(words::SETTINGS_WRONG);
+    }
+    if proposes && !view.knows_mounting() {
+        return Some(words::NEEDS_MOUNTING);
+    }
+    if moves && !cell.is_armed {
+        return refusal_to_move(cell).or(Some(words::NOT_ARMED_YET));
+    }
+    None
+}
+
+fn refusal_to_move(cell: &CellView) -> Option<&'static str> {
+    if cell.robot.state != LinkState::Ready {
+        return Some(words::NO_ROBOT);
+    }
+    match cell.robot.latest.as_ref().map(|report| &report.readiness) {
+        Some(Readiness::ReadOnly) => Some(words::ROBOT_ONLY_READS),
+        Some(Readiness::NotReady { remedy, .. }) => Some(remedy),
+        _ => None,
+    }
+}
+
+/// A lamp: its shape says it, its colour only repeats it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lamp {
+    /// Not wanted.
+    Off,
+    /// Under way.
+    Waiting,
+    /// Fine.
+    Good,
+    /// To be looked at.
+    Look,
+    /// Broken.
+    Bad,
+}
+
+/// A link's lamp, its word, and below it what happened and what to do.
+#[must_use]
+pub fn lamp(state: &LinkState) -> (Lamp, &'static str, Option<String>) {
+    match state {
+        LinkState::Off => (Lamp::Off, words::OFF, None),
+        LinkState::Connecting => (Lamp::Waiting, words::CONNECTING, None),
+        LinkState::Ready => (Lamp::Good, words::READY, None),
+        LinkState::Failed { error, retry_in } => {
+            let again = retry_in.map_or_else(|| words::NOT_AGAIN.to_owned(), words::again_in);
+            (Lamp::Bad, words::FAILED, Some(format!("{error}. {again}")))
+        }
+    }
+}
+
+/// The robot's lamp: one that cannot be moved is not called ready.
+#[must_use]
+pub fn robot_lamp(cell: &CellView) -> (Lamp, &'static str, Option<String>) {
+    match (&cell.robot.state, cell.robot.latest.as_ref().map(|report| &report.readiness)) {
+        (LinkState::Ready, Some(Readiness::NotReady { remedy, .. })) => {
+            (Lamp::Look, words::CONNECTED, Some((*remedy).to_owned()))
+        }
+        (LinkState::Ready, Some(Readiness::ReadOnly)) => (Lamp::Good, words::CONNECTED, None),
+        (state, _) => lamp(state),
+    }
+}
+
+/// The profiler's lamp.
+#[must_use]
+pub fn sensor_lamp(cell: &CellView) -> (Lamp, &'static str, Option<String>) {
+    match (&cell.sensor.state, &cell.live) {
+        (LinkState::Ready, None) => (Lamp::Look, words::NO_PROFILE_YET, None),
+        (state, _) => lamp(state),
+    }
+}
+
+/// Number and unit of every part of a pose in the session's notation, with no more digits than the robot gives.
+#[must_use]
+pub fn pose_rows(
+    notation: &PoseNotation,
+    base_from_flange: &Transform<Base, Flange>,
+    resolution_mm: f64,
+) -> Vec<(String, String)> {
+    let decimals = decimals_of(resolution_mm);
+    let of_length = decimals_of(resolution_mm / notation.length_unit.in_mm());
+    let numbers = notation.numbers(base_from_flange);
+    let names = ["x", "y", "z"].into_iter().chain(notation.orientation_names().iter().copied());
+    // A degree has about as many digits as a millimetre; radians and parts of a quaternion need two more.
+    let (of_angle, unit) = match notation.orientation {
+        crate::geometry::notation::OrientationForm::Angles if notation.angle_unit.in_degrees() < 2.0 => {
+            (decimals, notation.angle_unit.symbol())
+        }
+        crate::geometry::notation::OrientationForm::Angles => (decimals + 2, notation.angle_unit.symbol()),
+        _ => (decimals + 2, ""),
+    };
+    names
+        .zip(numbers)
+        .enumerate()
+        .map(|(idx, (name, value))| {
+            let value = if idx < 3 {
+                format!("{} {}", fixed(value, of_length), notation.length_unit.symbol())
+            } else {
+                format!("{} {unit}", fixed(value, of_angle))
+            };
+            (name.to_owned(), value.trim_end().to_owned())
+        })
+        .collect()
+}
+
+/// Decimals that a number in steps of `resolution` has; three where that is not known, as for recorded poses.
+fn decimals_of(resolution: f64) -> usize {
+    if resolution <= 0.0 {
+        return 3;
+    }
+    let mut decimals = 0;
+    let mut step = 1.0;
+    while decimals < 6 && step > resolution * 1.5 {
+        step /= 10.0;
+        decimals += 1;
+    }
+    decimals
+}
+
+/// How far a box of the state machine is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BoxState {
+    /// Not entered.
+    Ahead,
+    /// Where the search is.
+    Now,
+    /// Passed.
+    Done,
+    /// The end, reached as hoped.
+    Found,
+    /// The end, reached otherwise.
+    GaveUp,
+}
+
+/// The boxes of the paper's Fig. 3 in the order in which they are drawn.
+pub const PHASES: [SearchPhase; 6] = [
+    SearchPhase::First,
+    SearchPhase::Probe,
+    SearchPhase::Reverse,
+    SearchPhase::Climb,
+    SearchPhase::Pass,
+    SearchPhase::Ended,
+];
+
+/// How far each of [`PHASES`] is.
+#[must_use]
+pub fn boxes(search: Option<&SearchReport>) -> [BoxState; 6] {
+    let Some(search) = search else { return [BoxState::Ahead; 6] };
+    let place = |phase: SearchPhase| PHASES.iter().position(|known| *known == phase).unwrap_or(0);
+    let has_turned = search.sign < 0.0;
+    // A search that gave up went as far as its captures show.
+    let reached = match (search.phase, &search.end) {
+        (SearchPhase::Ended, Some(end)) if !end.is_found() => match search.points.len() {
+            0 | 1 => place(SearchPhase::First),
+            2 => place(SearchPhase::Probe),
+            _ if search.curve.is_some() => place(SearchPhase::Pass),
+            _ => place(SearchPhase::Climb),
+        },
+        (phase, _) => place(phase),
+    };
+    PHASES.map(|phase| {
+        let idx = place(phase);
+        match (&search.end, phase) {
+            (Some(end), SearchPhase::Ended) => {
+                if end.is_found() {
+                    BoxState::Found
+                } else {
+                    BoxState::GaveUp
+                }
+            }
+            (_, SearchPhase::Reverse) if search.phase != SearchPhase::Reverse => {
+                if has_turned {
+                    BoxState::Done
+                } else {
+                    BoxState::Ahead
+                }
+            }
+            (None, _) if idx == reached => BoxState::Now,
+            _ if idx < reached || (search.end.is_some() && idx == reached) => BoxState::Done,
+            _ => BoxState::Ahead,
+        }
+    })
+}
+
+/// A search as a curve to draw.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SearchCurve {
+    /// Its steps with an arc.
+    pub points: Vec<SweepPoint>,
+    /// The curve through them.
+    pub peak: Option<Peak>,
+    /// Where the published rule would have stopped, mm.
+    pub published_stop_mm: Option<f64>,
+}
+
+/// The curve of a search.
+#[must_use]
+pub fn search_curve(search: &SearchReport, ball_radius_mm: f64) -> SearchCurve {
+    let peak = search.curve.map(|curve| Peak {
+        travel_mm: curve.peak_mm,
+        std_mm: curve.peak_std_mm,
+        curvature: curve.curvature,
+    });
+    let point = |(capture_idx, seen): (usize, &SearchPoint)| {
+        let [section_radius_mm, section_radius_std_mm] = seen.radius_and_std_mm?;
+        let residual_mm =
+            peak.map_or(f64::NAN, |peak| section_radius_mm - peak.section_radius_mm(seen.travelled_mm, ball_radius_mm));
+        let travel_mm = seen.travelled_mm;
+        Some(SweepPoint { capture_idx, travel_mm, section_radius_mm, section_radius_std_mm, residual_mm })
+    };
+    let published = search.published_stop_idx.and_then(|idx| search.points.get(idx));
+    SearchCurve {
+        points: search.points.iter().enumerate().filter_map(point).collect(),
+        peak,
+        published_stop_mm: published.map(|point| point.travelled_mm),
+    }
+}
+
+/// What is wrong with the settings, and what to do; empty if nothing is.
+#[must_use]
+pub fn problems(settings: &CellSettings, ball_radius_mm: f64, robot: Option<&RobotReport>) -> Vec<&'static str> {
+    let (search, limits) = (&settings.search, &settings.limits);
+    let longest_step_mm = search.step_mm.max(search.coarse_step_mm);
+    let mut found = Vec::new();
+    let mut check = |is_wrong: bool, words| {
+        if is_wrong {
+            found.push(words);
+        }
+    };
+    check(search.direction.iter().all(|part| *part == 0.0), problem::NO_DIRECTION);
+    check(search.max_travel_mm < 2.0 * search.step_mm, problem::LITTLE_TRAVEL);
+    check(longest_step_mm > ball_radius_mm, problem::STEP_BEYOND_BALL);
+    check(longest_step_mm > limits.max_move_mm, problem::STEP_TOO_LONG);
+    check(limits.transit_speed_mm_s > limits.max_speed_mm_s, problem::TRANSIT_TOO_FAST);
+    check(limits.search_speed_mm_s > limits.max_speed_mm_s, problem::SEARCH_TOO_FAST);
+    if let Some(workspace) = &limits.workspace {
+        let sides = || workspace.min_mm.iter().zip(&workspace.max_mm);
+        let is_empty = sides().any(|(min, max)| min >= max);
+        check(is_empty, problem::EMPTY_BOX);
+        let is_outside = robot.is_some_and(|report| {
+            let place = report.base_from_flange.translation_mm();
+            place.iter().zip(sides()).any(|(place, (min, max))| place < min || place > max)
+        });
+        check(!is_empty && is_outside, problem::OUTSIDE_BOX);
+    }
+    found
+}
+
+/// A view that follows what comes 30 times a second without trembling: it stays while it holds what is to be seen and
+/// does not waste most of its room.
+#[must_use]
+pub fn steady(kept: Option<[[f64; 2]; 2]>, wanted: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
+    /// Room around what is seen when the view is chosen anew, as a part of it.
+    const ROOM: f64 = 0.12;
+    /// A view so much wider than needed is chosen anew.
+    const WASTE: f64 = 1.6;
+    let holds = |kept: &[[f64; 2]; 2]| {
+        kept.iter().zip(&wanted).all(|(kept, wanted)| {
+            kept[0] <= wanted[0] && wanted[1] <= kept[1] && kept[1] - kept[0] <= WASTE * (wanted[1] - wanted[0])
+        })
+    };
+    kept.filter(holds).unwrap_or_else(|| {
+        wanted.map(|[low, high]| {
+            let room = (high - low) * ROOM;
+            [low - room, high + room]
+        })
+    })
+}
+
+#[cfg(test)]
+#[path = "model_tests.rs"]
+mod tests;

@@ -1,0 +1,131 @@
+//! The capture panel: the safety strip above, connection and settings at the left, what is seen and done at the right.
+
+use std::rc::Rc;
+use std::sync::Arc;
+
+use egui::{Rect, ScrollArea, Ui, UiBuilder};
+
+use crate::app::Command;
+use crate::app::cell::{CellCommand, CellSettings};
+use crate::device::SearchReport;
+use crate::geometry::Profile;
+use crate::session::Target;
+use crate::ui::actions::Action;
+use crate::ui::arcs::model::ProfileModel;
+use crate::ui::rail::Step;
+use crate::ui::{PanelContext, theme};
+
+use super::memory::CellMemory;
+use super::model::{Deed, SearchCurve, View};
+use super::{connection, live, machine, settings, strip, work};
+
+/// Width of the column at the left, points.
+const LEFT_WIDTH: f32 = 304.0;
+/// The least of it where the window is narrow.
+const LEAST_LEFT_WIDTH: f32 = 264.0;
+/// The least height of the plots; below, the column scrolls.
+const LEAST_PLOT_HEIGHT: f32 = 284.0;
+
+/// What the panel remembers between frames.
+#[derive(Debug)]
+pub struct CaptureState {
+    pub(super) profile: Option<(Arc<Profile>, bool, Rc<ProfileModel>)>,
+    pub(super) view: Option<[[f64; 2]; 2]>,
+    pub(super) is_profile_fitted: bool,
+    pub(super) curve: Option<(Arc<SearchReport>, Rc<SearchCurve>)>,
+    pub(super) is_curve_fitted: bool,
+    /// Radius of the ball of a new session, mm.
+    pub(super) radius_mm: f64,
+    /// Whether the mounting is to be seen in the next frame.
+    pub(super) reveals_mounting: bool,
+}
+
+impl Default for CaptureState {
+    fn default() -> Self {
+        Self {
+            profile: None,
+            view: None,
+            is_profile_fitted: true,
+            curve: None,
+            is_curve_fitted: true,
+            radius_mm: 15.0,
+            reveals_mounting: false,
+        }
+    }
+}
+
+/// What every card draws from, and where it puts what the user asks for.
+pub(super) struct Desk<'a> {
+    pub view: View<'a>,
+    pub memory: &'a mut CellMemory,
+    pub state: &'a mut CaptureState,
+    pub commands: &'a mut Vec<Command>,
+    pub actions: &'a mut Vec<Action>,
+}
+
+impl Desk<'_> {
+    pub fn ask(&mut self, command: CellCommand) {
+        self.commands.push(Command::Cell(Box::new(command)));
+    }
+
+    pub fn set(&mut self, settings: &CellSettings) {
+        if *settings != self.view.cell.settings {
+            self.ask(CellCommand::SetSettings(Box::new(*settings)));
+        }
+    }
+
+    pub fn carry_out(&mut self, deed: Deed) {
+        match deed {
+            Deed::Cell(command) => self.ask(command),
+            Deed::NewSession => self.commands.push(Command::NewSession(Target::ball(self.state.radius_mm))),
+            Deed::ShowMounting => self.state.reveals_mounting = true,
+            Deed::Compare => self.actions.push(Action::GoTo(Step::Compare)),
+        }
+    }
+}
+
+/// Shows the panel of a workbench.
+pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, memory: &mut CellMemory, state: &mut CaptureState) {
+    let view = View::of(context.workbench);
+    show_view(ui, view, memory, state, context.commands, context.actions);
+}
+
+/// Shows the panel of any view.
+pub fn show_view(
+    ui: &mut Ui,
+    view: View<'_>,
+    memory: &mut CellMemory,
+    state: &mut CaptureState,
+    commands: &mut Vec<Command>,
+    actions: &mut Vec<Action>,
+) {
+    let mut desk = Desk { view, memory, state, commands, actions };
+    ui.spacing_mut().item_spacing.y = theme::GAP;
+    strip::show(ui, &mut desk);
+    let area = ui.available_rect_before_wrap();
+    let left_width = (area.width() * 0.3).clamp(LEAST_LEFT_WIDTH, LEFT_WIDTH);
+    let (left, right) = area.split_left_right_at_x(area.left() + left_width);
+    column(ui, left, "capture left", |ui| {
+        connection::show(ui, &mut desk);
+        settings::show(ui, &mut desk);
+    });
+    column(ui, right.with_min_x(right.left() + theme::GAP), "capture right", |ui| {
+        let below = machine::HEIGHT + work::height(ui.available_width()) + 2.0 * theme::GAP;
+        let height = (area.height() - below).max(LEAST_PLOT_HEIGHT).floor();
+        live::show(ui, height, &mut desk);
+        machine::show(ui, &desk);
+        work::show(ui, &mut desk);
+    });
+    ui.advance_cursor_after_rect(area);
+}
+
+/// A column that scrolls by itself; the bar gets the gap beside it, so that it covers nothing.
+fn column(ui: &mut Ui, rect: Rect, name: &str, body: impl FnOnce(&mut Ui)) {
+    let mut inside = ui.new_child(UiBuilder::new().max_rect(rect.with_max_x(rect.right() + theme::GAP)));
+    inside.set_clip_rect(rect.with_max_x(rect.right() + theme::GAP).intersect(ui.clip_rect()));
+    ScrollArea::vertical().id_salt(name).auto_shrink([false, false]).show(&mut inside, |ui| {
+        ui.spacing_mut().item_spacing.y = theme::GAP;
+        ui.set_width(rect.width());
+        body(ui);
+    });
+}

@@ -1,0 +1,219 @@
+//! What is set before motion, in sections that fold, each with its values in a line.
+
+use egui::{ComboBox, DragValue, Frame, Margin, Role, Ui, WidgetInfo};
+
+use crate::app::cell::CellSettings;
+use crate::device::WorkspaceBox;
+use crate::device::search::{DirectionFrame, StopRule};
+use crate::geometry::Vec3;
+use crate::text::capture_settings as words;
+use crate::ui::theme;
+use crate::ui::widgets::{card, fixed, split_row};
+
+use super::fields::{hint, number, number_row, remark, section};
+use super::model::problems;
+use super::mounting::{self, DIRECTIONS};
+use super::panel::Desk;
+
+/// Half the side of a workspace box that is switched on, mm.
+const BOX_HALF_MM: f64 = 250.0;
+
+/// Shows the card.
+pub fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let mut settings = desk.view.cell.settings;
+    card(
+        ui,
+        words::SETTINGS,
+        |_| {},
+        |ui| {
+            Frame::new().inner_margin(Margin::symmetric(12, 8)).show(ui, |ui| {
+                ui.set_width(ui.available_width());
+                let radius_mm = desk.view.ball_radius_mm().unwrap_or(f64::INFINITY);
+                for problem in problems(&settings, radius_mm, desk.view.cell.robot.latest.as_ref()) {
+                    remark(ui, "!", problem, theme::palette(ui).bad);
+                }
+                let summary = search_summary(&settings);
+                section(ui, words::SEARCH, &summary, None, |ui| search(ui, &mut settings));
+                let limits = &settings.limits;
+                let summary = words::limits_summary(&fixed(limits.max_speed_mm_s, 0), limits.workspace.is_some());
+                section(ui, words::LIMITS, &summary, None, |ui| limits_rows(ui, &mut settings, desk));
+                let summary = words::captures_summary(settings.settle.settle_ms, settings.settle.num_profiles);
+                section(ui, words::CAPTURES, &summary, None, |ui| captures(ui, &mut settings));
+                let summary = if settings.mounting.is_some() { words::GIVEN } else { words::NOT_GIVEN };
+                let opens = std::mem::take(&mut desk.state.reveals_mounting);
+                section(ui, words::MOUNTING, summary, opens.then_some(true), |ui| {
+                    mounting_rows(ui, &mut settings, desk);
+                    if opens {
+                        ui.scroll_to_cursor(None);
+                    }
+                });
+            });
+        },
+    );
+    desk.set(&settings);
+}
+
+fn length(value: &mut f64, least: f64, most: f64, decimals: usize) -> DragValue<'_> {
+    DragValue::new(value).range(least..=most).speed(least.max(0.01)).max_decimals(decimals).suffix(" mm")
+}
+
+/// A name out of some.
+fn choice(ui: &mut Ui, label: &'static str, shown: &str, help: &str, offers: impl FnOnce(&mut Ui)) {
+    split_row(ui, label, |ui| {
+        ui.spacing_mut().interact_size.y = 22.0;
+        ui.spacing_mut().button_padding = egui::vec2(8.0, 2.0);
+        let combo = ComboBox::from_id_salt(label).width(128.0).selected_text(shown);
+        let response = combo.show_ui(ui, offers).response;
+        response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, label));
+        if !help.is_empty() {
+            response.on_hover_text(help);
+        }
+    });
+}
+
+fn direction_name(direction: [f64; 3]) -> Option<usize> {
+    mounting::name_of(Vec3::from(direction))
+}
+
+fn search_summary(settings: &CellSettings) -> String {
+    let search = &settings.search;
+    let frame = if search.frame == DirectionFrame::Tool { words::TOOL } else { words::BASE };
+    let axis = direction_name(search.direction).map_or(words::VECTOR, |idx| DIRECTIONS[idx]);
+    words::search_summary(&format!("{frame} {axis}"), &fixed(search.step_mm, 2), &fixed(search.max_travel_mm, 0))
+}
+
+fn search(ui: &mut Ui, settings: &mut CellSettings) {
+    let search = &mut settings.search;
+    let frame_name = |frame| if frame == DirectionFrame::Tool { words::TOOL } else { words::BASE };
+    choice(ui, words::FRAME, frame_name(search.frame), "", |ui| {
+        for frame in [DirectionFrame::Tool, DirectionFrame::Base] {
+            ui.selectable_value(&mut search.frame, frame, frame_name(frame));
+        }
+    });
+    let named = direction_name(search.direction);
+    let shown = named.map_or(words::VECTOR, |idx| DIRECTIONS[idx]);
+    choice(ui, words::DIRECTION, shown, words::DIRECTION_HINT, |ui| {
+        for (idx, name) in DIRECTIONS.iter().enumerate() {
+            if ui.selectable_label(named == Some(idx), *name).clicked() {
+                search.direction = mounting::direction(idx).into();
+            }
+        }
+        if ui.selectable_label(named.is_none(), words::VECTOR).clicked() && named.is_some() {
+            // No axis any more, so that its parts can be typed.
+            search.direction = [0.0, 1.0, 0.5];
+        }
+    });
+    if named.is_none() {
+        for (part, name) in search.direction.iter_mut().zip(words::PARTS) {
+            number_row(ui, name, "", DragValue::new(part).range(-1.0..=1.0).speed(0.01).max_decimals(4));
+        }
+    }
+    number_row(ui, words::STEP, "", length(&mut search.step_mm, 0.05, 10.0, 2));
+    number_row(ui, words::COARSE_STEP, words::COARSE_STEP_HINT, length(&mut search.coarse_step_mm, 0.05, 20.0, 2));
+    number_row(ui, words::MAX_TRAVEL, "", length(&mut search.max_travel_mm, 1.0, 200.0, 1));
+    number_row(ui, words::MAX_CAPTURES, "", DragValue::new(&mut search.max_captures).range(3..=500).speed(0.2));
+    stop_rule(ui, &mut search.stop);
+}
+
+fn stop_rule(ui: &mut Ui, stop: &mut StopRule) {
+    let usual = StopRule::PeakKnown { peak_std_mm: 0.02 };
+    let is_published = *stop == StopRule::Published;
+    let shown = if is_published { words::STOP_PUBLISHED } else { words::STOP_PEAK };
+    choice(ui, words::STOP_RULE, shown, "", |ui| {
+        if ui.selectable_label(!is_published, words::STOP_PEAK).clicked() && is_published {
+            *stop = usual;
+        }
+        if ui.selectable_label(is_published, words::STOP_PUBLISHED).clicked() {
+            *stop = StopRule::Published;
+        }
+    });
+    if let StopRule::PeakKnown { peak_std_mm } = stop {
+        number_row(ui, words::PEAK_STD, "", length(peak_std_mm, 0.001, 1.0, 3).prefix("σ ").speed(0.001));
+    }
+}
+
+fn speed<'a>(value: &'a mut f64, unit: &'static str, most: f64) -> DragValue<'a> {
+    DragValue::new(value).range(1.0..=most).speed(0.5).max_decimals(1).suffix(unit)
+}
+
+fn limits_rows(ui: &mut Ui, settings: &mut CellSettings, desk: &Desk<'_>) {
+    let limits = &mut settings.limits;
+    number_row(ui, words::SPEED_CAP, "", speed(&mut limits.max_speed_mm_s, " mm/s", 500.0));
+    number_row(ui, words::TURN_CAP, "", speed(&mut limits.max_rotation_speed_deg_s, " °/s", 180.0));
+    number_row(ui, words::TRANSIT_SPEED, "", speed(&mut limits.transit_speed_mm_s, " mm/s", 500.0));
+    number_row(ui, words::SEARCH_SPEED, "", speed(&mut limits.search_speed_mm_s, " mm/s", 500.0));
+    number_row(ui, words::MAX_MOVE, "", length(&mut limits.max_move_mm, 1.0, 2000.0, 0));
+    let turn = DragValue::new(&mut limits.max_turn_deg).range(1.0..=180.0).speed(0.5).max_decimals(0).suffix("°");
+    number_row(ui, words::MAX_TURN, "", turn);
+    ui.add_space(4.0);
+    let mut has_box = limits.workspace.is_some();
+    if ui.checkbox(&mut has_box, words::WORKSPACE).on_hover_text(words::WORKSPACE_HINT).changed() {
+        let report = desk.view.cell.robot.latest.as_ref();
+        let place = report.map_or_else(Vec3::zeros, |report| report.base_from_flange.translation_mm());
+        let corner = |side: f64| [place.x, place.y, place.z].map(|part| (part + side * BOX_HALF_MM).round());
+        limits.workspace = has_box.then(|| WorkspaceBox { min_mm: corner(-1.0), max_mm: corner(1.0) });
+    }
+    if let Some(workspace) = &mut limits.workspace {
+        for (axis, names) in words::SIDES.iter().enumerate() {
+            split_row(ui, ["x", "y", "z"][axis], |ui| {
+                let side =
+                    |value| DragValue::new(value).range(-5000.0..=5000.0).speed(1.0).max_decimals(0).suffix(" mm");
+                number(ui, names[1], words::WORKSPACE_HINT, side(&mut workspace.max_mm[axis]));
+                ui.label(theme::dim(ui, "…"));
+                number(ui, names[0], words::WORKSPACE_HINT, side(&mut workspace.min_mm[axis]));
+            });
+        }
+    }
+}
+
+fn captures(ui: &mut Ui, settings: &mut CellSettings) {
+    let settle = &mut settings.settle;
+    number_row(ui, words::SETTLE, "", DragValue::new(&mut settle.settle_ms).range(0..=10_000).speed(5.0).suffix(" ms"));
+    number_row(ui, words::STILL, "", length(&mut settle.still_mm, 0.001, 1.0, 3).speed(0.001));
+    let turn = DragValue::new(&mut settle.still_deg).range(0.001..=1.0).speed(0.001).max_decimals(3).suffix("°");
+    number_row(ui, words::STILL_TURN, "", turn);
+    number_row(ui, words::AVERAGED, "", DragValue::new(&mut settle.num_profiles).range(1..=64).speed(0.05));
+    number_row(ui, words::RETRIES, "", DragValue::new(&mut settle.num_retries).range(0..=20).speed(0.05));
+}
+
+fn mounting_rows(ui: &mut Ui, settings: &mut CellSettings, desk: &Desk<'_>) {
+    hint(ui, if desk.view.has_solution { words::MOUNTING_SOLVED } else { words::MOUNTING_WHY });
+    ui.add_space(4.0);
+    let mut is_given = settings.mounting.is_some();
+    if ui.checkbox(&mut is_given, words::MOUNTING_GIVEN).changed() {
+        settings.mounting = is_given.then_some(mounting::USUAL);
+    }
+    let Some(given) = &mut settings.mounting else { return };
+    let [look, line] = mounting::look_and_line(given);
+    for (label, named, is_look) in [(words::LOOKS_ALONG, look, true), (words::LINE_ALONG, line, false)] {
+        let named = mounting::name_of(named);
+        let shown = named.map_or_else(|| words::OBLIQUE.to_owned(), |idx| words::of_flange(DIRECTIONS[idx]));
+        choice(ui, label, &shown, "", |ui| {
+            for (idx, name) in DIRECTIONS.iter().enumerate() {
+                if ui.selectable_label(named == Some(idx), words::of_flange(name)).clicked() {
+                    let chosen = mounting::direction(idx);
+                    *given = if is_look {
+                        mounting::turned(*given, chosen, line)
+                    } else {
+                        mounting::turned(*given, look, chosen)
+                    };
+                }
+            }
+        });
+    }
+    for (value, name) in given.translation_mm.iter_mut().zip(["x", "y", "z"]) {
+        let field = DragValue::new(value).range(-2000.0..=2000.0).speed(0.5).max_decimals(1).suffix(" mm");
+        number_row(ui, &words::mounting_number(name), "", field);
+    }
+    let convention = desk.view.notation().convention;
+    let before = convention.angles_deg_from_rotation(&mounting::rotation(given));
+    let mut angles_deg = before.map(|angle| (angle * 10.0).round() / 10.0);
+    let mut has_changed = false;
+    for (angle, name) in angles_deg.iter_mut().zip(convention.angle_names) {
+        let field = DragValue::new(angle).range(-360.0..=360.0).speed(0.5).max_decimals(1).suffix("°");
+        has_changed |= number_row(ui, &words::mounting_number(name), "", field);
+    }
+    if has_changed {
+        *given = mounting::with_rotation(*given, &convention.rotation_from_angles_deg(angles_deg));
+    }
+}

@@ -1,0 +1,227 @@
+//! What is done with the cell: this station, the next one, a whole run, and the replay of a session.
+
+use egui::{Align, DragValue, Frame, Label, Layout, Margin, ProgressBar, RichText, Ui, UiBuilder, vec2};
+
+use crate::app::cell::{CellCommand, Proposal, StationRoutine};
+use crate::device::RoutineEnd;
+use crate::text::capture as words;
+use crate::ui::theme;
+use crate::ui::widgets::{card_with_height, fixed};
+
+use super::connection::pose_line;
+use super::fields::{hint, number_row, remark, tall_button};
+use super::model::{self, refusal};
+use super::orientation;
+use super::panel::Desk;
+
+/// Height of each card, points.
+const HEIGHT: f32 = 212.0;
+/// Side of the picture of an orientation, points.
+const PICTURE_SIZE: f32 = 104.0;
+/// From this width on the cards stand side by side.
+const SIDE_BY_SIDE_FROM: f32 = 800.0;
+
+/// Height of all cards in so much width, points.
+pub fn height(width: f32) -> f32 {
+    if width >= SIDE_BY_SIDE_FROM { HEIGHT } else { 2.0f32.mul_add(HEIGHT, theme::GAP) }
+}
+
+/// Shows the cards.
+pub fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
+    if ui.available_width() >= SIDE_BY_SIDE_FROM {
+        row(ui, desk, &[(station, 0.26), (next, 0.4), (run, 0.34)]);
+    } else {
+        row(ui, desk, &[(station, 0.46), (run, 0.54)]);
+        next(ui, desk);
+    }
+}
+
+type Card = fn(&mut Ui, &mut Desk<'_>);
+
+/// Cards beside each other, each with its part of the width.
+fn row(ui: &mut Ui, desk: &mut Desk<'_>, cards: &[(Card, f32)]) {
+    let area = ui.available_rect_before_wrap();
+    let area = area.with_max_y(area.top() + HEIGHT);
+    let (mut left, mut part_before) = (area.left(), 0.0);
+    for (card, part) in cards {
+        part_before += part;
+        let right = area.left() + ((area.width() + theme::GAP) * part_before).round() - theme::GAP;
+        let mut inside = ui.new_child(UiBuilder::new().max_rect(area.with_min_x(left).with_max_x(right)));
+        card(&mut inside, desk);
+        left = right + theme::GAP;
+    }
+    ui.allocate_rect(area, egui::Sense::hover());
+}
+
+fn body(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
+    Frame::new().inner_margin(Margin::symmetric(12, 10)).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 6.0;
+        contents(ui);
+    });
+}
+
+/// A button that asks for a command, or says why it cannot be given.
+fn ask(ui: &mut Ui, desk: &mut Desk<'_>, label: &str, name: &str, hint: &str, command: CellCommand) {
+    let reason = refusal(&desk.view, &command);
+    if tall_button(ui, label, name, hint, reason) {
+        desk.ask(command);
+    }
+}
+
+fn station(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let num_stations = desk.view.num_stations();
+    card_with_height(
+        ui,
+        words::STATION,
+        HEIGHT,
+        |_| {},
+        |ui| {
+            body(ui, |ui| {
+                ui.with_layout(Layout::top_down_justified(Align::Center), |ui| {
+                    ask(ui, desk, words::FIND, words::FIND, words::FIND_HINT, CellCommand::FindLargestArc);
+                    ask(
+                        ui,
+                        desk,
+                        words::CAPTURE_SHORT,
+                        words::CAPTURE,
+                        words::CAPTURE_HINT,
+                        CellCommand::CaptureStation,
+                    );
+                });
+                hint(ui, &words::num_stations(num_stations));
+                match &desk.view.cell.last_end {
+                    // How a search ended stands below its boxes.
+                    Some(end) if !matches!(end, RoutineEnd::Searched(_)) => {
+                        let (is_well, sentence) = words::routine_end(end);
+                        let palette = theme::palette(ui);
+                        let (mark, color) = if is_well { ("✔", palette.good) } else { ("!", palette.warn) };
+                        remark(ui, mark, &sentence, color);
+                    }
+                    _ => {}
+                }
+            });
+        },
+    );
+}
+
+fn next(ui: &mut Ui, desk: &mut Desk<'_>) {
+    card_with_height(ui, words::NEXT_STATION, HEIGHT, |_| {}, |ui| body(ui, |ui| proposal(ui, desk)));
+}
+
+fn proposal(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let Some(proposal) = desk.view.cell.proposal.as_ref() else {
+        let sentence = if desk.view.knows_mounting() { words::NO_PROPOSAL } else { words::NEEDS_MOUNTING };
+        hint(ui, sentence);
+        ask(ui, desk, words::PROPOSE, words::PROPOSE_NAME, "", CellCommand::ProposeStation);
+        return;
+    };
+    let area = ui.available_rect_before_wrap().with_max_y(ui.cursor().top() + PICTURE_SIZE);
+    let (left, right) = area.split_left_right_at_x(area.right() - PICTURE_SIZE);
+    let mut beside = ui.new_child(UiBuilder::new().max_rect(left));
+    proposed(&mut beside, desk, proposal);
+    orientation::show(ui, right, &desk.view, proposal);
+    ui.advance_cursor_after_rect(area);
+    ui.horizontal(|ui| {
+        let refused = proposal.refusal.as_ref().map(ToString::to_string);
+        let reason = refused.as_deref().or_else(|| refusal(&desk.view, &CellCommand::AcceptProposal));
+        if tall_button(ui, words::ACCEPT, words::ACCEPT, words::ACCEPT_HINT, reason) {
+            desk.ask(CellCommand::AcceptProposal);
+        }
+        ask(ui, desk, words::ANOTHER, words::ANOTHER_NAME, "", CellCommand::SkipProposal);
+        ask(ui, desk, words::FORGET, words::FORGET_NAME, "", CellCommand::DropProposal);
+    });
+}
+
+fn proposed(ui: &mut Ui, desk: &Desk<'_>, proposal: &Proposal) {
+    /// A planned pose need not be reached more exactly.
+    const RESOLUTION_MM: f64 = 0.1;
+    let station = &proposal.station;
+    ui.spacing_mut().item_spacing.y = 2.0;
+    pose_line(ui, &model::pose_rows(&desk.view.notation(), &station.base_from_flange, RESOLUTION_MM));
+    let way = words::way(&fixed(proposal.distance_mm, 0), &fixed(proposal.turn_deg, 0));
+    ui.label(theme::dim(ui, way));
+    match &proposal.refusal {
+        Some(refusal) => {
+            let color = theme::palette(ui).bad;
+            ui.add(Label::new(RichText::new(format!("✖ {refusal}")).color(color)).wrap());
+        }
+        None => {
+            ui.add(Label::new(&proposal.reason).wrap());
+        }
+    }
+}
+
+fn run(ui: &mut Ui, desk: &mut Desk<'_>) {
+    card_with_height(
+        ui,
+        words::RUN,
+        HEIGHT,
+        |_| {},
+        |ui| {
+            body(ui, |ui| {
+                if desk.view.cell.replay.is_some() {
+                    replay(ui, desk);
+                } else if model::is_running(desk.view.cell) && desk.view.cell.run.is_some() {
+                    run_under_way(ui, desk);
+                } else {
+                    run_settings(ui, desk);
+                }
+            });
+        },
+    );
+}
+
+fn run_settings(ui: &mut Ui, desk: &mut Desk<'_>) {
+    ui.spacing_mut().item_spacing.y = 2.0;
+    let field = DragValue::new(&mut desk.memory.num_stations.0).range(1..=60).speed(0.05);
+    number_row(ui, words::RUN_STATIONS, "", field);
+    let mut settings = desk.view.cell.settings;
+    ui.horizontal(|ui| {
+        for (routine, name) in
+            [(StationRoutine::LargestArc, words::LARGEST_ARC), (StationRoutine::FixedPoint, words::FIXED_POINT)]
+        {
+            ui.radio_value(&mut settings.routine, routine, name);
+        }
+    });
+    ui.checkbox(&mut settings.asks_before_motion, words::ASKS);
+    desk.set(&settings);
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        let num_stations = desk.memory.num_stations.0;
+        let start = CellCommand::StartRun { num_stations };
+        ask(ui, desk, words::START_RUN, words::START_RUN, words::START_RUN_HINT, start);
+        ask(ui, desk, words::REPLAY, words::REPLAY, words::REPLAY_HINT, CellCommand::StartReplay);
+    });
+    if let Some(run) = desk.view.cell.run {
+        hint(ui, &words::run_progress(run.num_done, run.num_stations, run.num_failed));
+    }
+}
+
+fn run_under_way(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let Some(run) = desk.view.cell.run else { return };
+    let part = f32::from(run.num_done + run.num_failed) / f32::from(run.num_stations.max(1));
+    ui.label(theme::strong(words::run_progress(run.num_done, run.num_stations, run.num_failed)));
+    let accent = theme::palette(ui).accent;
+    ui.add(ProgressBar::new(part).desired_height(8.0).fill(accent));
+    let state = match (run.is_asking, run.is_paused) {
+        (true, _) => words::RUN_ASKS,
+        (_, true) => words::RUN_PAUSED,
+        _ => "",
+    };
+    hint(ui, state);
+    ui.horizontal(|ui| {
+        if run.is_paused {
+            ask(ui, desk, words::RESUME, words::RESUME_NAME, "", CellCommand::ResumeRun);
+        } else {
+            ask(ui, desk, words::PAUSE, words::PAUSE_NAME, words::PAUSE_HINT, CellCommand::PauseRun);
+        }
+    });
+}
+
+fn replay(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let is_over = desk.view.cell.replay.is_some_and(|replay| replay.is_over);
+    let sentence = if is_over { Some(words::REPLAY_OVER.to_owned()) } else { model::replay_words(&desk.view) };
+    ui.add(Label::new(sentence.unwrap_or_default()).wrap());
+    ui.allocate_space(vec2(0.0, 4.0));
+    ask(ui, desk, words::END_REPLAY, words::END_REPLAY, "", CellCommand::EndReplay);
+}

@@ -1,0 +1,61 @@
+//! What the window itself does about the live cell: stop comes first, and what was set is remembered.
+
+use egui::{Context, Event, Key};
+
+use crate::app::Command;
+use crate::app::cell::{CellCommand, CellView};
+use crate::ui::capture::model::is_running;
+
+use super::Shell;
+
+/// The command that stops.
+pub fn stop() -> Command {
+    Command::Cell(Box::new(CellCommand::Stop))
+}
+
+/// Whether a command starts the simulated cell, with a session of its own.
+pub fn is_practise(command: &Command) -> bool {
+    matches!(command, Command::Cell(command) if **command == CellCommand::Practise)
+}
+
+/// Whether a key was pressed that stops the robot, which nothing else gets then: Escape always, the space bar unless it
+/// is being typed.
+pub fn takes_stop_key(ctx: &Context, cell: &CellView) -> bool {
+    if !is_running(cell) {
+        return false;
+    }
+    let is_typing = ctx.text_edit_focused();
+    ctx.input_mut(|input| {
+        let num_before = input.events.len();
+        input.events.retain(|event| match event {
+            Event::Key { key, pressed: true, .. } => *key != Key::Escape && (is_typing || *key != Key::Space),
+            _ => true,
+        });
+        input.events.len() < num_before
+    })
+}
+
+impl Shell {
+    /// Whatever else was asked for in the same frame waits.
+    pub(super) fn stop_first(&mut self, commands: &mut Vec<Command>) {
+        let num_before = commands.len();
+        commands.retain(|command| *command != stop());
+        if commands.len() < num_before {
+            self.workbench.apply(stop());
+        }
+    }
+
+    /// Keeps what is set for the next run. What is set for the simulated cell is not for a real one: when practice ends,
+    /// the settings are again what they were before.
+    pub(super) fn remember_cell(&mut self) {
+        let cell = self.workbench.cell();
+        let is_practice = cell.is_practice;
+        let has_ended = std::mem::replace(&mut self.was_practice, is_practice) && !is_practice;
+        if has_ended {
+            let settings = Box::new(self.persisted.cell.settings);
+            self.workbench.apply(Command::Cell(Box::new(CellCommand::SetSettings(settings))));
+        } else if !is_practice {
+            self.persisted.cell.settings = cell.settings;
+        }
+    }
+}
