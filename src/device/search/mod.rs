@@ -2,8 +2,8 @@
 //! step, and says where to go next.
 //!
 //! - [`settings`]: how to search, and where a step leads; [`report`]: a search as it stands; [`end`]: how it ended.
-//! - [`curve`]: the fit of l² = R² − c (m − m₀)² over the real travel.
-//! - [`trace`]: what the captures say, whoever decided on them: the curve, both stops, what does not fit.
+//! - `curve`: the fit of l² = R² − c (m − m₀)² over the real travel.
+//! - `trace`: what the captures say, whoever decided on them: the curve, both stops, what does not fit.
 //! - [`machine`]: where to go next. [`replay`]: the same captures played again, without deciding.
 //!
 //! `docs/search.md` tells it in words, with figures.

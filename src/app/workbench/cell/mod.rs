@@ -10,12 +10,12 @@ mod run;
 use std::time::Instant;
 
 use crate::app::cell::{Activity, CellCommand, CellView};
-use crate::device::sim::SimCell;
 use crate::device::{Deadlines, RobotWorker, SensorWorker};
 use crate::text::cell as words;
 
 use self::captures::Measuring;
 use self::links::Armed;
+use self::practice::Practice;
 use self::proposals::Proposing;
 use self::replay::Replay;
 use self::run::Run;
@@ -32,7 +32,7 @@ pub(super) struct LiveCell {
     measuring: Option<Measuring>,
     proposing: Proposing,
     run: Option<Run>,
-    practice: Option<SimCell>,
+    practice: Option<Practice>,
     replay: Option<Replay>,
 }
 

@@ -1,19 +1,27 @@
 //! The next station's pose, before anything moves: from the plan where there is a solution, otherwise roughly.
 
+use std::sync::Arc;
+
 use crate::app::cell::{Proposal, RoughMounting};
 use crate::app::jobs::{JobOutcome, Slot};
-use crate::calibrate::{Noise, Reading as MeasuredReading};
+use crate::calibrate::{BallProblem, Noise, Reading as MeasuredReading, best_available};
 use crate::device::{Arming, LinkState, MotionRefusal, RobotReport};
 use crate::fit::ArcFit;
 use crate::geometry::{Base, Flange, Profile, Rigid, Transform, Vec3};
-use crate::plan::{Limits, MeasuredStation, PlannedStation, RoughCell, View, next_rough};
+use crate::plan::{
+    Limits, MeasuredStation, Plan, PlanRefusal, PlannedStation, RoughCell, View, next_rough, next_stations,
+};
 use crate::session::Reading;
 use crate::text::cell as words;
 
-use super::super::{NoticeKind, Workbench};
+use super::super::{NoticeKind, Results, Workbench};
 
-/// Rough poses that are tried before it is said that none can be gone to.
-const MOST_ROUGH_TRIES: usize = 8;
+/// How often other poses are looked for before it is said that none can be gone to, each time within limits that are
+/// narrower by this factor.
+const MOST_TRIES: usize = 10;
+const NARROWER: f64 = 0.8;
+/// Poses that are worked out at once where there is a solution.
+const NUM_AT_ONCE: usize = 4;
 /// A pose is that of an avoided one if it is turned against it by less than this, degrees.
 const SAME_POSE_DEG: f64 = 3.0;
 /// The ball's centre stays so far inside the ends of the line that its arc does too, radii ...
@@ -28,57 +36,99 @@ const HALF_RANGE_RADII: f64 = 0.4;
 pub(super) struct Proposing {
     /// It is wanted, and waits for the plan that follows the last capture.
     is_waiting: bool,
-    rough: Slot<Result<PlannedStation, String>>,
+    choosing: Slot<Result<Chosen, String>>,
     /// Poses that were not wanted, or where nothing could be measured.
     avoided: Vec<Transform<Base, Flange>>,
 }
 
 impl Proposing {
     pub const fn is_wanted(&self) -> bool {
-        self.is_waiting || self.rough.is_running()
+        self.is_waiting || self.choosing.is_running()
     }
 }
 
-/// Why a pose cannot be gone to, apart from the arm switch.
-fn obstacle(
-    arming: Option<&Arming>,
-    report: Option<&RobotReport>,
-    to: &Transform<Base, Flange>,
-) -> Option<MotionRefusal> {
-    let (arming, report) = (arming?, report?);
-    arming.check(&report.readiness, &report.base_from_flange, to, arming.limits.transit_speed_mm_s).err()
+/// A station with the reason for it.
+type Chosen = (PlannedStation, String);
+
+/// What stations are chosen by.
+enum Basis {
+    /// A solution, and the plan that was made for it.
+    Solved { problem: Arc<BallProblem>, results: Arc<Results>, planned: Plan },
+    /// The mounting as it was said, and where the ball was seen.
+    Rough { cell: RoughCell, stations: Vec<MeasuredStation>, view: View },
 }
 
-/// Everything that a rough plan needs.
-struct RoughPlan {
-    cell: RoughCell,
-    stations: Vec<MeasuredStation>,
+/// Chooses a station that can be gone to.
+struct Chooser {
+    basis: Basis,
     avoided: Vec<Transform<Base, Flange>>,
-    view: View,
     limits: Limits,
     arming: Option<Arming>,
     report: Option<RobotReport>,
 }
 
-impl RoughPlan {
-    /// The first pose that can be gone to; if there is none, the first of all.
-    fn next(mut self) -> Result<PlannedStation, String> {
+impl Chooser {
+    /// The first pose that can be gone to; if there is none, the first of all, with what is in its way.
+    fn choose(mut self) -> Result<Chosen, String> {
         let mut first = None;
-        for _ in 0..MOST_ROUGH_TRIES {
-            let next = next_rough(&self.cell, &self.stations, &self.avoided, &self.view, &self.limits);
-            let station = match next {
-                Ok((station, _)) => station,
-                Err(refusal) if first.is_none() => return Err(refusal.to_string()),
+        for _ in 0..MOST_TRIES {
+            let candidates = match self.candidates() {
+                Ok(candidates) => candidates,
+                Err(reason) if first.is_none() => return Err(reason),
                 Err(_) => break,
             };
-            let to = station.base_from_flange;
-            if obstacle(self.arming.as_ref(), self.report.as_ref(), &to).is_none() {
-                return Ok(station);
+            for chosen in candidates {
+                let to = chosen.0.base_from_flange;
+                if self.is_free(&to) {
+                    return Ok(chosen);
+                }
+                self.avoided.push(to);
+                first.get_or_insert(chosen);
             }
-            self.avoided.push(to);
-            first.get_or_insert(station);
+            // Nearer to the middle of all stations the ways are shorter.
+            self.limits.max_tilt_deg *= NARROWER;
+            self.limits.max_spin_deg *= NARROWER;
         }
-        first.ok_or_else(|| words::NO_BALL_SEEN.to_owned())
+        first.ok_or_else(|| PlanRefusal::NothingWithinLimits.to_string())
+    }
+
+    /// The best stations that are not avoided.
+    fn candidates(&mut self) -> Result<Vec<Chosen>, String> {
+        match &mut self.basis {
+            Basis::Solved { problem, results, planned } => {
+                let now_mm = planned.workspace_point_std_mm;
+                let is_avoided = |station: &PlannedStation| {
+                    let rotation = station.base_from_flange.rotation();
+                    self.avoided.iter().any(|pose| pose.rotation().angle_to(&rotation).to_degrees() < SAME_POSE_DEG)
+                };
+                let mut stations = std::mem::take(&mut planned.stations);
+                if stations.is_empty() {
+                    let solution =
+                        best_available(&results.methods).ok_or_else(|| PlanRefusal::Undetermined.to_string())?;
+                    let plan = next_stations(problem, solution, &self.limits, NUM_AT_ONCE);
+                    stations = plan.map_err(|refusal| refusal.to_string())?.stations;
+                }
+                stations.retain(|station| !is_avoided(station));
+                let with_reason = |station| {
+                    let reason = words::reason_of_planned(&station, now_mm);
+                    (station, reason)
+                };
+                Ok(stations.into_iter().map(with_reason).collect())
+            }
+            Basis::Rough { cell, stations, view } => {
+                let (station, _) = next_rough(cell, stations, &self.avoided, view, &self.limits)
+                    .map_err(|refusal| refusal.to_string())?;
+                let reason = words::reason_of_rough(&station);
+                Ok(vec![(station, reason)])
+            }
+        }
+    }
+
+    /// Whether nothing but the arm switch is in the way.
+    fn is_free(&self, to: &Transform<Base, Flange>) -> bool {
+        let (Some(arming), Some(report)) = (&self.arming, &self.report) else { return true };
+        let speed_mm_s = arming.limits.transit_speed_mm_s;
+        arming.check(&report.readiness, &report.base_from_flange, to, speed_mm_s).is_ok()
     }
 }
 
@@ -109,19 +159,21 @@ impl Workbench {
     pub(super) fn forget_proposal(&mut self) {
         self.cell.view.proposal = None;
         self.cell.proposing.is_waiting = false;
-        self.cell.proposing.rough.cancel();
+        self.cell.proposing.choosing.cancel();
     }
 
     /// Works out a proposal that is wanted, once the plan that follows the last capture is there.
     pub(super) fn poll_proposal(&mut self) -> bool {
-        if let Some(outcome) = self.cell.proposing.rough.poll() {
+        if let Some(outcome) = self.cell.proposing.choosing.poll() {
             match outcome {
-                JobOutcome::Done(Ok(station)) => {
-                    let reason = words::reason_of_rough(&station);
+                JobOutcome::Done(Ok((station, reason))) => {
                     self.cell.view.proposal = Some(self.proposal_of(station, reason));
                 }
                 JobOutcome::Done(Err(reason)) => self.take_no_proposal(reason),
-                broken => self.notify_broken("planning", &broken),
+                broken => {
+                    self.notify_broken("planning", &broken);
+                    self.end_run(Some(words::NO_PROPOSAL.to_owned()));
+                }
             }
             return true;
         }
@@ -129,12 +181,17 @@ impl Workbench {
             return false;
         }
         self.cell.proposing.is_waiting = false;
-        if let Some((station, reason)) = self.planned() {
-            self.cell.view.proposal = Some(self.proposal_of(station, reason));
-            return true;
-        }
-        match self.rough_plan() {
-            Ok(plan) => self.cell.proposing.rough.start("propose", &self.wake, move |_| plan.next()),
+        match self.basis() {
+            Ok(basis) => {
+                let chooser = Chooser {
+                    basis,
+                    avoided: self.cell.proposing.avoided.clone(),
+                    limits: self.plan_limits,
+                    arming: self.arming(),
+                    report: self.cell.view.robot.latest.clone(),
+                };
+                self.cell.proposing.choosing.start("propose", &self.wake, move |_| chooser.choose());
+            }
             Err(reason) => self.take_no_proposal(reason),
         }
         true
@@ -146,29 +203,6 @@ impl Workbench {
         } else {
             self.notify(NoticeKind::Error, reason);
         }
-    }
-
-    /// Of the plan for the solution: the best station that is not avoided and can be gone to.
-    fn planned(&mut self) -> Option<(PlannedStation, String)> {
-        let stations = &self.current_plan()?.stations;
-        let avoided = &self.cell.proposing.avoided;
-        let is_avoided = |station: &&PlannedStation| {
-            let pose = station.base_from_flange.rotation();
-            avoided.iter().any(|avoided| avoided.rotation().angle_to(&pose).to_degrees() < SAME_POSE_DEG)
-        };
-        let (arming, report) = (self.arming(), self.cell.view.robot.latest.as_ref());
-        let is_free =
-            |station: &&PlannedStation| obstacle(arming.as_ref(), report, &station.base_from_flange).is_none();
-        let others = || stations.iter().filter(|station| !is_avoided(station));
-        let are_all_avoided = others().next().is_none();
-        let chosen = others().find(is_free).or_else(|| others().next()).or_else(|| stations.first())?.clone();
-        if are_all_avoided {
-            // Once round: they are all offered again.
-            self.cell.proposing.avoided.clear();
-        }
-        let now_mm = self.current_plan().and_then(|plan| plan.workspace_point_std_mm);
-        let reason = words::reason_of_planned(&chosen, now_mm);
-        Some((chosen, reason))
     }
 
     fn proposal_of(&self, station: PlannedStation, reason: String) -> Proposal {
@@ -219,8 +253,11 @@ impl Workbench {
         self.pause_run(true);
     }
 
-    /// What the rough plan goes by: the mounting as it was said, and where the ball was seen.
-    fn rough_plan(&self) -> Result<RoughPlan, String> {
+    /// What the next station is chosen by.
+    fn basis(&self) -> Result<Basis, String> {
+        if let (Some(plan), Some((_, problem, results))) = (self.current_plan(), self.case()) {
+            return Ok(Basis::Solved { problem, results, planned: plan.clone() });
+        }
         let (Some(document), Some(ball)) = (&self.document, self.ball()) else {
             return Err(words::NO_SESSION.to_owned());
         };
@@ -261,15 +298,7 @@ impl Workbench {
             noise,
             looks_along_in_base,
         };
-        Ok(RoughPlan {
-            cell,
-            stations,
-            avoided: self.cell.proposing.avoided.clone(),
-            view,
-            limits: self.plan_limits,
-            arming: self.arming(),
-            report: self.cell.view.robot.latest.clone(),
-        })
+        Ok(Basis::Rough { cell, stations, view })
     }
 
     /// The largest section of each station; without stations that which is seen now.
