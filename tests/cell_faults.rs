@@ -170,7 +170,8 @@ fn is_expected(fault: Fault, end: &RoutineEnd) -> bool {
         Fault::BallMoved => matches!(end, RoutineEnd::Searched(_)),
         Fault::StaleProfile => matches!(end, RoutineEnd::StaleProfiles { .. }),
         Fault::NotRemote => {
-            matches!(end, RoutineEnd::NotAllowed(_) | RoutineEnd::Failed { .. } | RoutineEnd::Searched(_))
+            matches!(end, RoutineEnd::NotAllowed(MotionRefusal::NotReady { .. }))
+                || is_error(|error| matches!(error, DeviceError::NotReady { .. }))
         }
     }
 }
@@ -246,8 +247,8 @@ fn each_fault_at_each_phase_ends_in_its_time_and_in_its_name() {
     ];
     let of_wire = [Fault::SplitFrames, Fault::Slow, Fault::Silent, Fault::Garbage, Fault::Disconnect];
     let of_both = of_wire.into_iter().flat_map(|fault| [(fault, SimDevice::Robot), (fault, SimDevice::Sensor)]);
-    let of_one =
-        [Fault::RobotRefuses, Fault::BallMoved, Fault::StaleProfile].map(|fault| (fault, fault.usual_device()));
+    let of_one = [Fault::RobotRefuses, Fault::BallMoved, Fault::StaleProfile, Fault::NotRemote]
+        .map(|fault| (fault, fault.usual_device()));
     let cases: Vec<_> = of_both
         .chain(of_one)
         .flat_map(|(fault, device)| moments.into_iter().map(move |moment| (fault, device, moment)))
