@@ -13,7 +13,9 @@ use handeye::device::robot::ur::script::{Program, Statement, UrPose};
 use handeye::device::{DeviceError, Endpoint, MoveState, Readiness, RobotDriver, RobotKind, RobotSetup};
 use handeye::geometry::{Base, Flange, Tcp, Transform, Vec3};
 
-use super::fake::{Act, PATIENCE, assert_near, expect_error, finish, line, linear, listen, pose, serve, soon};
+use super::fake::{
+    Act, PATIENCE, assert_near, expect_error, expect_timeout, finish, line, linear, listen, pose, serve, soon,
+};
 
 /// The tool point lies 100 mm ahead of the flange and is turned.
 const OFFSET: UrPose = UrPose([0.01, -0.02, 0.1, 0.0, 0.3, 0.0]);
@@ -306,6 +308,18 @@ fn states_without_motion_are_named_with_a_remedy() {
 }
 
 #[test]
+fn a_program_of_somebody_else_is_not_ended_by_a_move() {
+    let fake = Fake::new(start_pose());
+    let mut robot = robot_at(fake.start());
+    let others = Statement::MoveL { pose: OFFSET, acceleration_m_s2: 1.0, speed_m_s: 0.1, time_s: 0.0 };
+    fake.state().program = Some(Program::single(others));
+    let error = robot.start_move(&linear(shifted(1.0), 10.0), soon()).expect_err("busy");
+    assert!(matches!(&error, DeviceError::NotReady { found, .. } if found.contains("program")), "{error:?}");
+    fake.state().program = None;
+    robot.start_move(&linear(shifted(1.0), 10.0), soon()).expect("taken");
+}
+
+#[test]
 fn a_protective_stop_ends_the_move() {
     let fake = Fake::new(start_pose());
     let mut robot = robot_at(fake.start());
@@ -320,7 +334,6 @@ fn a_protective_stop_ends_the_move() {
 #[test]
 fn broken_controllers_end_in_a_named_error_by_the_deadline() {
     let is_unexpected = |error: &DeviceError| matches!(error, DeviceError::Unexpected { .. });
-    let is_timeout = |error: &DeviceError| matches!(error, DeviceError::Timeout { .. });
     let is_closed = |error: &DeviceError| matches!(error, DeviceError::Closed { .. });
     let accepted = ServerPacket::VersionAccepted(true).encode();
     let answered = |act: Act| {
@@ -336,9 +349,9 @@ fn broken_controllers_end_in_a_named_error_by_the_deadline() {
         );
         move |deadline| connect(&setup(endpoint), deadline).map(drop)
     };
-    expect_error(answered(Act::Silence), is_timeout);
-    expect_error(answered(Act::Send(accepted[..2].to_vec())), is_timeout);
-    expect_error(answered(Act::Send(accepted.clone())), is_timeout);
+    expect_timeout(answered(Act::Silence));
+    expect_timeout(answered(Act::Send(accepted[..2].to_vec())));
+    expect_timeout(answered(Act::Send(accepted.clone())));
     expect_error(answered(Act::SendAndClose(accepted[..3].to_vec())), is_closed);
     expect_error(answered(Act::SendAndClose(accepted)), is_closed);
     expect_error(answered(Act::Send(b"\x00\x00\x00".to_vec())), is_unexpected);

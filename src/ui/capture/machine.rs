@@ -100,8 +100,14 @@ fn paint_box(ui: &mut Ui, rect: Rect, phase: SearchPhase, state: BoxState) {
     let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
     painter.rect(rect, CornerRadius::same(theme::RADIUS), fill, Stroke::new(1.0, border), StrokeKind::Inside);
     let center = rect.center();
-    painter.text(center - vec2(0.0, 8.0), Align2::CENTER_CENTER, format!("{mark}{title}"), theme::strong_font(), color);
-    let dim = if state == BoxState::Now { palette.on_accent } else { palette.text_dim };
     let small = FontId::proportional(theme::SMALL_SIZE);
-    painter.text(center + vec2(0.0, 10.0), Align2::CENTER_CENTER, words::phase_does(phase), small, dim);
+    let dim = if state == BoxState::Now { palette.on_accent } else { palette.text_dim };
+    let does = painter.layout_no_wrap(words::phase_does(phase).to_owned(), small, dim);
+    // What has no room is left out: the titles say enough.
+    let has_room = does.size().x < rect.width() - 8.0;
+    let up = if has_room { 8.0 } else { 0.0 };
+    painter.text(center - vec2(0.0, up), Align2::CENTER_CENTER, format!("{mark}{title}"), theme::strong_font(), color);
+    if has_room {
+        painter.galley(center + vec2(-does.size().x / 2.0, 10.0 - does.size().y / 2.0), does, dim);
+    }
 }

@@ -24,7 +24,7 @@ const LEFT_WIDTH: f32 = 304.0;
 /// The least of it where the window is narrow.
 const LEAST_LEFT_WIDTH: f32 = 264.0;
 /// The least height of the plots; below, the column scrolls.
-const LEAST_PLOT_HEIGHT: f32 = 264.0;
+const LEAST_PLOT_HEIGHT: f32 = 284.0;
 
 /// What the panel remembers between frames.
 #[derive(Debug)]

@@ -27,6 +27,8 @@ const STOP_DECELERATION_M_S2: f64 = 1.0;
 const PEAK_OVER_MEAN: f64 = 2.0;
 /// A program that has not begun after this is not going to: the controller takes none, or not from here.
 const START_GRACE: Duration = Duration::from_secs(2);
+/// A program that has done its last statement has ended after this.
+const END_GRACE: Duration = Duration::from_millis(300);
 /// The switch between local and remote control is looked at so often.
 const REMOTE_AGE: Duration = Duration::from_secs(1);
 
@@ -86,6 +88,26 @@ impl UrRobot {
         state.readiness(self.dashboard.as_ref().and_then(|dashboard| dashboard.is_remote))
     }
 
+    /// The state once no program runs any more. Our last one ends a moment after it has written its mark; one of somebody
+    /// else is not ended by a move of ours.
+    fn idle_state(&mut self, deadline: Instant) -> Result<UrState, DeviceError> {
+        let give_up = deadline.min(Instant::now() + END_GRACE);
+        loop {
+            let state = self.stream.newest(deadline)?;
+            if state.is_program_stopped() {
+                return Ok(state);
+            }
+            if Instant::now() >= give_up {
+                return Err(DeviceError::NotReady {
+                    device: DEVICE,
+                    found: "a program that runs".to_owned(),
+                    needed: "no program",
+                    remedy: "stop the program on the pendant",
+                });
+            }
+        }
+    }
+
     /// Sends a program that does this and then writes the next mark.
     fn run(
         &mut self,
@@ -133,7 +155,7 @@ impl RobotDriver for UrRobot {
     }
 
     fn start_move(&mut self, motion: &LinearMove, deadline: Instant) -> Result<(), DeviceError> {
-        let state = self.stream.newest(deadline)?;
+        let state = self.idle_state(deadline)?;
         refuse_unready(self.readiness(&state, deadline))?;
         let mut script = self.connect_script(deadline)?;
         self.stream.last_warning = None;
