@@ -15,7 +15,7 @@ use handeye::device::{DeviceError, Endpoint, MoveState, Readiness, RobotDriver, 
 use handeye::geometry::PoseConvention;
 
 use super::fake::{
-    Act, PATIENCE, assert_near, expect_error, expect_timeout, finish, line, linear, listen, pose, serve, soon,
+    Act, assert_near, expect_error, expect_timeout, finish, line, linear, listen, pose, serve, soon, wait_until,
 };
 
 fn setup(endpoint: Endpoint) -> RobotSetup {
@@ -299,10 +299,7 @@ fn the_example_of_the_documentation_is_a_robot_and_a_profiler() {
     robot.start_move(&linear(moved([0.0, 300.0, 0.0]), 1.0), soon()).expect("taken");
     drop(robot);
     let mut robot = connect(&setup(robot_at), soon()).expect("the robot");
-    let lost_at = Instant::now();
-    while robot.report(soon()).expect("a state").is_moving == Some(true) {
-        assert!(lost_at.elapsed() < PATIENCE, "it moves on");
-    }
+    wait_until(|| robot.report(soon()).expect("a state").is_moving == Some(false));
     robot.start_move(&linear(moved([0.0; 3]), 1000.0), soon()).expect("taken");
     finish(&mut *robot).expect("it arrives");
 

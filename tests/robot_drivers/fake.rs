@@ -142,6 +142,16 @@ pub fn assert_near(found: &Transform<Base, Flange>, expected: &Transform<Base, F
     assert!(distance_mm <= tolerance_mm && turn_deg <= tolerance_mm, "{distance_mm} mm, {turn_deg}° apart");
 }
 
+/// Waits for what another thread does.
+#[track_caller]
+pub fn wait_until(mut is_so: impl FnMut() -> bool) {
+    let start = Instant::now();
+    while !is_so() {
+        assert!(start.elapsed() < PATIENCE, "it never comes");
+        thread::yield_now();
+    }
+}
+
 /// Waits for the end of a move.
 pub fn finish(robot: &mut dyn RobotDriver) -> Result<(), DeviceError> {
     let start = Instant::now();
