@@ -171,7 +171,8 @@ fn is_expected(fault: Fault, end: &RoutineEnd) -> bool {
         Fault::StaleProfile => matches!(end, RoutineEnd::StaleProfiles { .. }),
         Fault::NotRemote => {
             matches!(end, RoutineEnd::NotAllowed(MotionRefusal::NotReady { .. }))
-                || is_error(|error| matches!(error, DeviceError::NotReady { .. }))
+                // Between the look and the script: the script is ignored, and the move never ends.
+                || is_error(|error| matches!(error, DeviceError::NotReady { .. } | DeviceError::Timeout { .. }))
         }
     }
 }
