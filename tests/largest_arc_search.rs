@@ -275,7 +275,7 @@ impl Cell {
                 let num_steps = peak_mm.abs() / settings.step_mm + 12.0;
                 f64::from(settings.max_captures) < num_steps / (1.0 - 3.0 * self.dropout_part)
             }
-            SearchEnd::NotBegun(_) => false,
+            SearchEnd::NotBegun(_) | SearchEnd::RadiusUnchanged { .. } => false,
         }
     }
 }
@@ -286,6 +286,7 @@ const fn name_of(end: &SearchEnd) -> &'static str {
         SearchEnd::Found { .. } => "found",
         SearchEnd::NotBegun(_) => "not begun",
         SearchEnd::NoArcAtStart { .. } => "no arc at the start",
+        SearchEnd::RadiusUnchanged { .. } => "radius unchanged",
         SearchEnd::ArcLost { .. } => "arc lost",
         SearchEnd::ResidualGrew { .. } => "residual grew",
         SearchEnd::Stuck { .. } => "robot stuck",

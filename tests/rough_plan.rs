@@ -1,13 +1,24 @@
 //! Stations of a cell whose mounting is only guessed: whether the ball stays in view, and what the stations are worth.
+#![expect(clippy::expect_used, reason = "a test that finds nothing to check must fail")]
 
-use handeye::calibrate::{Mount, Noise};
+use std::sync::Arc;
+
+use handeye::calibrate::{Method, Mount, Noise, SideChoice, solve};
+use handeye::device::SearchEnd;
+use handeye::device::search::{DirectionFrame, Search, SearchNext, SearchSettings, StepSeen};
+use handeye::fit::{ArcOptions, extract_arc};
 use handeye::geometry::{Rigid, Transform, Vec3, so3};
 use handeye::plan::{Limits, MeasuredStation, PlanRefusal, RoughCell, View, next_rough, refined};
-use handeye::scene::Random;
+use handeye::scene::{Dirt, Random, Scene};
+use handeye::session::model::UnknownFields;
+use handeye::session::{Capture, Reading, Session, Station, Target, ball_problem, measure};
+use handeye::watch::Unwatched;
 
 const NUM_STATIONS: usize = 8;
 const VIEW: View = View { half_width_mm: 10.0, half_range_mm: 10.0, middle_range_mm: 80.0 };
 const RADIUS_MM: f64 = 12.0;
+/// Noise of each coordinate of a reported position, mm.
+const POSITION_STD_MM: f64 = 0.02;
 /// Further beside the ball's middle than this part of its radius a profile has no arc to search from.
 const SEEN_RADII: f64 = 0.95;
 
@@ -83,6 +94,75 @@ impl Cell {
         ))
     }
 
+    /// Searches the largest arc from a pose, through profiles, with all captures kept.
+    fn search(&mut self, start: &Rigid) -> (Station, MeasuredStation) {
+        let settings = self.search_settings();
+        let scene = Scene {
+            ball_in_world: self.ball_in_base,
+            radius_mm: RADIUS_MM,
+            num_points: 300,
+            range_sign: 1.0,
+            profile_std_mm: 0.01,
+            dirt: Dirt { has_table: true, ..Dirt::default() },
+            decimals: None,
+        };
+        let options = ArcOptions { ball_radius_mm: RADIUS_MM, profile_std_mm: None };
+        let mut search = Search::new(&settings, RADIUS_MM);
+        let mut captures: Vec<Capture> = Vec::new();
+        let mut centres: Vec<(f64, [f64; 2])> = Vec::new();
+        let mut previous_mm = None;
+        while let SearchNext::CaptureAt { commanded_mm } = search.next() {
+            let pose = settings.pose_at(start, commanded_mm);
+            let world_from_sensor = self.carrier(&pose) * self.flange_from_sensor;
+            let profile = scene.profile(&world_from_sensor, &mut self.noise, &mut Random::new(0, 2));
+            let shift = self.noise.normal3() * POSITION_STD_MM;
+            let reported = Rigid::from_parts((pose.translation.vector + shift).into(), pose.rotation);
+            let travelled_mm = settings.travelled_mm(start, &reported);
+            let arc = extract_arc(&profile, &options);
+            if let Ok(arc) = &arc {
+                centres.push((travelled_mm, [arc.circle.x_mm, arc.circle.z_mm]));
+            }
+            captures.push(Capture {
+                base_from_flange: Transform::from_rigid(reported),
+                written_angles: None,
+                reading: Reading::Profile(Arc::new(profile)),
+                step_mm: previous_mm.map(|previous_mm: f64| commanded_mm - previous_mm),
+                unknown: UnknownFields::new(),
+            });
+            previous_mm = Some(commanded_mm);
+            search.take(StepSeen {
+                travelled_mm,
+                radius_and_std_mm: arc
+                    .map(|arc| [arc.circle.radius_mm, arc.std_mm()[2]])
+                    .map_err(|refusal| refusal.to_string()),
+            });
+        }
+        let end = search.report().end.as_ref().expect("over");
+        let SearchEnd::Found { peak_mm, peak_std_mm } = *end else { panic!("{end}") };
+        let off = |travelled_mm: f64| (travelled_mm - peak_mm).abs();
+        centres.sort_by(|(a, _), (b, _)| off(*a).total_cmp(&off(*b)));
+        let at_peak = Transform::from_rigid(settings.pose_at(start, peak_mm));
+        let station = Station {
+            label: String::new(),
+            enabled: true,
+            side: SideChoice::Auto,
+            edge: None,
+            captures,
+            unknown: UnknownFields::new(),
+        };
+        (station, MeasuredStation::at_peak(at_peak, centres[0].1, peak_std_mm))
+    }
+
+    /// Along the laser's normal as the guess has it.
+    fn search_settings(&self) -> SearchSettings {
+        let direction = self.rough.flange_from_sensor.rotation * Vec3::y();
+        let frame = match self.rough.mount {
+            Mount::OnFlange => DirectionFrame::Tool,
+            Mount::Fixed => DirectionFrame::Base,
+        };
+        SearchSettings { frame, direction: direction.into(), ..SearchSettings::default() }
+    }
+
     /// How far the mounting is off: of the sensor's origin, mm, and degrees.
     fn error(&self, cell: &RoughCell) -> [f64; 2] {
         let off = self.flange_from_sensor.inverse() * cell.flange_from_sensor;
@@ -126,6 +206,36 @@ fn eight_stations_keep_the_ball_in_view_and_spread_over_the_limits() {
         println!("{mount:?}: the ball was out of view at {num_lost} of {num_planned} planned stations");
         // Two σ along three axes would be one in ten if all were on the edge.
         assert!(100 * num_lost < num_planned, "{mount:?}: {num_lost} of {num_planned}");
+    }
+}
+
+/// The whole way of a live cell, without its devices.
+#[test]
+fn a_run_from_a_guess_ends_in_a_calibration_with_a_true_uncertainty() {
+    let limits = Limits { max_spin_deg: 60.0, ..Limits::default() };
+    for (mount, seed) in [(Mount::OnFlange, 0), (Mount::OnFlange, 1), (Mount::OnFlange, 2), (Mount::Fixed, 3)] {
+        let mut cell = Cell::new(seed, mount);
+        let mut pose = cell.first_pose();
+        let mut session = Session { mount, ..Session::new(Target::ball(RADIUS_MM)) };
+        session.robot.position_std_mm = Some(POSITION_STD_MM);
+        let mut stations = Vec::new();
+        while session.stations.len() < NUM_STATIONS {
+            let (station, measured) = cell.search(&pose);
+            session.stations.push(Station { label: session.stations.len().to_string(), ..station });
+            stations.push(measured);
+            let (planned, _) = next_rough(&cell.rough, &stations, &[], &VIEW, &limits).expect("a station");
+            pose = *planned.base_from_flange.rigid();
+        }
+        let measured = measure(&session, None, &mut Unwatched).expect("not cancelled");
+        let problem = ball_problem(&session, &measured).expect("a ball");
+        let solution = solve(&problem, Method::BallBundle).expect("solvable");
+        let known = solution.uncertainty.as_ref().expect("redundant");
+        let point = known.reference_point_in_sensor_mm;
+        let true_point = cell.flange_from_sensor * nalgebra::Point3::from(point);
+        let error_mm = (solution.flange_from_sensor.map_point(point) - true_point.coords).norm();
+        println!("{mount:?} {seed}: off by {error_mm:.4} mm, σ {:.4} mm", known.workspace_point_std_mm);
+        assert!(error_mm < 3.0 * known.workspace_point_std_mm, "{mount:?} {seed}: {error_mm}");
+        assert!(known.workspace_point_std_mm < 0.05, "{mount:?} {seed}: {}", known.workspace_point_std_mm);
     }
 }
 

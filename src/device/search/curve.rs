@@ -13,8 +13,8 @@ pub(super) const MIN_SECTIONS: usize = 3;
 /// The cosine between travel and normal as far as it is known beforehand, and its σ: a few degrees off, at most about 20.
 const COSINE: f64 = 0.97;
 const COSINE_STD: f64 = 0.03;
-/// Further off than 60° or beyond 1 by more than noise makes it, it is no cosine of such a travel.
-const COSINES: [f64; 2] = [0.5, 1.05];
+/// Nearer to 0 the travel is along the line, and beyond 1 is only what noise makes of it.
+const COSINES: [f64; 2] = [0.1, 1.05];
 /// σ of the ball's radius, as a part of it: several times the tolerance of a cheap ball.
 pub(super) const RADIUS_STD_PART: f64 = 0.002;
 /// Points of a real profile err together, so a section's σ is never below this part of the radius.

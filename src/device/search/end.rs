@@ -24,6 +24,14 @@ pub enum SearchEnd {
         /// Why.
         reason: String,
     },
+    /// The radius stays as it is: the travel is not across the laser line.
+    #[error(
+        "the section's radius did not change over {travelled_mm:.1} mm; the search has to go across the laser line, so choose another direction"
+    )]
+    RadiusUnchanged {
+        /// How far it went, mm.
+        travelled_mm: f64,
+    },
     /// The arc was there and is gone.
     #[error("the arc was lost at {travelled_mm:.2} mm before the peak was found: {reason}")]
     ArcLost {

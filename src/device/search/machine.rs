@@ -17,6 +17,8 @@ const LONGEST_STEP_PART: f64 = 0.25;
 const FAR_PART: f64 = 0.6;
 /// Steps of a probe that are fine; if noise still hides the slope then, coarse ones are quicker.
 const NUM_FINE_PROBES: usize = 2;
+/// From the very peak the radius falls by 3 % over this part of it, so where that does not show it never will.
+const FLAT_PART: f64 = 0.25;
 /// Profiles without an arc at one place before it counts as having none.
 const REFUSED_AT_ONE_PLACE: u8 = 2;
 /// Profiles without an arc in a row before it is lost; one or two may be holes.
@@ -149,7 +151,10 @@ impl Search {
             return self.after_refusal(commanded_mm, travelled_mm, reason);
         }
         self.num_refused = 0;
-        if let Some(end) = self.trace.misfit().or_else(|| self.trace.found(&self.settings)) {
+        // While nothing is known of the slope there is no curve that anything could be off.
+        let is_open = self.report.phase == SearchPhase::Probe && self.trace.grows().is_none();
+        let misfit = if is_open { None } else { self.trace.misfit() };
+        if let Some(end) = misfit.or_else(|| self.trace.found(&self.settings)) {
             return Err(end);
         }
         match self.report.phase {
@@ -157,14 +162,11 @@ impl Search {
                 self.report.phase = SearchPhase::Probe;
                 self.step_on()
             }
-            SearchPhase::Probe => match self.trace.grows() {
-                Some(true) => {
-                    self.report.phase = SearchPhase::Climb;
-                    self.go_on()
-                }
-                Some(false) => self.turn(),
-                None => self.step_on(),
-            },
+            SearchPhase::Probe if is_open && travelled_mm.abs() > FLAT_PART * self.ball_radius_mm => {
+                Err(SearchEnd::RadiusUnchanged { travelled_mm: travelled_mm.abs() })
+            }
+            SearchPhase::Probe if is_open => self.step_on(),
+            SearchPhase::Probe if self.trace.grows() == Some(false) => self.turn(),
             _ => self.go_on(),
         }
     }

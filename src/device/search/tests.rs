@@ -160,6 +160,23 @@ fn an_arc_that_vanishes_at_the_probe_turns_it_round() {
 }
 
 #[test]
+fn travel_along_the_laser_line_ends_it() {
+    let mut random = Random::new(1, 1);
+    let flat = run(&usual(), |_, at_mm| seen(at_mm, Some(12.0 + STD_MM * random.normal())));
+    let SearchEnd::RadiusUnchanged { travelled_mm } = flat.end() else { panic!("{}", flat.end()) };
+    assert!(*travelled_mm < 0.4 * RADIUS_MM, "{travelled_mm}");
+}
+
+#[test]
+fn travel_far_off_the_normal_finds_the_peak_late() {
+    // 60° off: the ball passes half as fast.
+    let settings = SearchSettings { max_travel_mm: 40.0, ..usual() };
+    let found = run(&settings, |_, at_mm| seen(at_mm, ball(5.0)(0.5 * at_mm)));
+    assert!((found.peak_mm() - 10.0).abs() < 0.05, "{}", found.end());
+    assert!((found.report.curve.expect("fitted").curvature - 0.25).abs() < 0.02);
+}
+
+#[test]
 fn an_arc_that_vanishes_while_it_climbs_is_lost() {
     let lost = run(&usual(), |_, at_mm| seen(at_mm, ball(9.0)(at_mm).filter(|_| at_mm < 3.0)));
     let SearchEnd::ArcLost { travelled_mm, .. } = lost.end() else { panic!("{}", lost.end()) };

@@ -22,8 +22,9 @@ const MOST_TRIES: usize = 10;
 const NARROWER: f64 = 0.8;
 /// Poses that are worked out at once where there is a solution.
 const NUM_AT_ONCE: usize = 4;
-/// A pose is that of an avoided one if it is turned against it by less than this, degrees.
-const SAME_POSE_DEG: f64 = 3.0;
+/// A pose is as good as an avoided one if it is turned against it by less than this, degrees: what was out of reach is so
+/// a little beside it as well.
+const SAME_POSE_DEG: f64 = 10.0;
 /// The ball's centre stays so far inside the ends of the line that its arc does too, radii ...
 const ARC_HALF_WIDTH_RADII: f64 = 0.6;
 /// ... but may always be this far from the middle, radii.
@@ -39,11 +40,30 @@ pub(super) struct Proposing {
     choosing: Slot<Result<Chosen, String>>,
     /// Poses that were not wanted, or where nothing could be measured.
     avoided: Vec<Transform<Base, Flange>>,
+    /// How many of them in a row the robot would not go to.
+    num_refused: u32,
 }
 
 impl Proposing {
     pub const fn is_wanted(&self) -> bool {
         self.is_waiting || self.choosing.is_running()
+    }
+
+    /// Nothing was measured at this pose: it is not proposed again as long as there are others.
+    pub fn avoid(&mut self, pose: Transform<Base, Flange>) {
+        self.avoided.push(pose);
+    }
+
+    /// The robot would not go to this pose. Answers how many in a row that were.
+    pub fn note_refused(&mut self, pose: Transform<Base, Flange>) -> u32 {
+        self.avoid(pose);
+        self.num_refused += 1;
+        self.num_refused
+    }
+
+    /// A station was measured: where the robot can go is known again.
+    pub const fn note_measured(&mut self) {
+        self.num_refused = 0;
     }
 }
 
@@ -85,11 +105,18 @@ impl Chooser {
                 self.avoided.push(to);
                 first.get_or_insert(chosen);
             }
-            // Nearer to the middle of all stations the ways are shorter.
-            self.limits.max_tilt_deg *= NARROWER;
-            self.limits.max_spin_deg *= NARROWER;
+            self.narrow();
         }
         first.ok_or_else(|| PlanRefusal::NothingWithinLimits.to_string())
+    }
+
+    /// Nearer to the middle of all stations the ways are shorter, and the arm is further from its limits.
+    fn narrow(&mut self) {
+        self.limits.max_tilt_deg *= NARROWER;
+        self.limits.max_spin_deg *= NARROWER;
+        if let Basis::Solved { planned, .. } = &mut self.basis {
+            planned.stations.clear();
+        }
     }
 
     /// The best stations that are not avoided.
@@ -146,14 +173,9 @@ impl Workbench {
     /// Another one than that which is proposed.
     pub(super) fn skip_proposal(&mut self) {
         if let Some(proposal) = self.cell.view.proposal.take() {
-            self.avoid(proposal.station.base_from_flange);
+            self.cell.proposing.avoid(proposal.station.base_from_flange);
         }
         self.want_proposal();
-    }
-
-    /// Does not propose this pose again as long as there are others.
-    pub(super) fn avoid(&mut self, pose: Transform<Base, Flange>) {
-        self.cell.proposing.avoided.push(pose);
     }
 
     pub(super) fn forget_proposal(&mut self) {
@@ -169,7 +191,11 @@ impl Workbench {
                 JobOutcome::Done(Ok((station, reason))) => {
                     self.cell.view.proposal = Some(self.proposal_of(station, reason));
                 }
-                JobOutcome::Done(Err(reason)) => self.take_no_proposal(reason),
+                JobOutcome::Done(Err(reason)) => {
+                    // Once round: all are offered again.
+                    self.cell.proposing.avoided.clear();
+                    self.take_no_proposal(reason);
+                }
                 broken => {
                     self.notify_broken("planning", &broken);
                     self.end_run(Some(words::NO_PROPOSAL.to_owned()));
@@ -183,13 +209,14 @@ impl Workbench {
         self.cell.proposing.is_waiting = false;
         match self.basis() {
             Ok(basis) => {
-                let chooser = Chooser {
+                let mut chooser = Chooser {
                     basis,
                     avoided: self.cell.proposing.avoided.clone(),
                     limits: self.plan_limits,
                     arming: self.arming(),
                     report: self.cell.view.robot.latest.clone(),
                 };
+                (0..self.cell.proposing.num_refused).for_each(|_| chooser.narrow());
                 self.cell.proposing.choosing.start("propose", &self.wake, move |_| chooser.choose());
             }
             Err(reason) => self.take_no_proposal(reason),
