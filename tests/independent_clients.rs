@@ -1,19 +1,23 @@
 //! The simulated cell against clients that others wrote, by `tests/clients/run.py`. They come from Python's package index, so
-//! they run only where they are asked for: `HANDEYE_CLIENTS=1 cargo test --test independent_clients -- --nocapture`.
+//! they run only where they are asked for: `HANDEYE_CLIENTS=1 cargo test --test independent_clients`.
 #![expect(clippy::expect_used, reason = "a test that cannot set itself up must fail")]
 
+use std::io::{self, Write as _};
 use std::path::Path;
 use std::process::Command;
 
 /// How `run.py` ends where a client could not be run.
 const SKIPPED: i32 = 3;
 
+/// What is skipped is said even where the output of tests that pass is not shown.
+fn say(text: &str) {
+    writeln!(io::stderr(), "{text}").expect("written");
+}
+
 #[test]
 fn clients_of_others_are_satisfied() {
     if std::env::var_os("HANDEYE_CLIENTS").is_none_or(|value| value.is_empty() || value == "0") {
-        println!(
-            "skipped: set HANDEYE_CLIENTS=1 to run the independent clients; they need Python 3 and its package index"
-        );
+        say("skipped: set HANDEYE_CLIENTS=1 to run the independent clients; they need Python 3 and its package index");
         return;
     }
     let python = if cfg!(windows) { "python" } else { "python3" };
@@ -22,11 +26,11 @@ fn clients_of_others_are_satisfied() {
     let output = match Command::new(python).arg(script).arg(env!("CARGO_BIN_EXE_handeye")).arg(folder).output() {
         Ok(output) => output,
         Err(error) => {
-            println!("skipped: {python} cannot be run ({error})");
+            say(&format!("skipped: {python} cannot be run ({error})"));
             return;
         }
     };
-    println!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    say(&(String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr)));
     let code = output.status.code().expect("an exit status");
     assert!(code == 0 || code == SKIPPED, "a client found something; see above");
 }

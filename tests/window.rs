@@ -185,9 +185,10 @@ fn an_edit_is_undone_and_redone_with_keys_and_buttons() {
 #[test]
 fn digits_and_arrows_move_through_the_window() {
     let mut harness = window_with("few-rotations.json");
-    for (key, step) in [Key::Num4, Key::Num5, Key::Num2, Key::Num1, Key::Num3].into_iter().zip([
+    for (key, step) in [Key::Num5, Key::Num6, Key::Num2, Key::Num3, Key::Num1, Key::Num4].into_iter().zip([
         Step::Compare,
         Step::Diagnosis,
+        Step::Capture,
         Step::Arcs,
         Step::Session,
         Step::Poses,

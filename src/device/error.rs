@@ -160,15 +160,42 @@ impl MessageError {
     }
 }
 
+/// As much as fits a line beside the rest of a sentence.
+const MAX_SHOWN: usize = 60;
+/// A sentence of somebody else may be longer, and is still read.
+const MAX_SENTENCE: usize = 240;
+
 /// Bytes from a wire as a short text that can be shown: quoted, escaped, cut.
 #[must_use]
 pub fn excerpt(bytes: impl AsRef<[u8]>) -> String {
-    /// As much as fits a line beside the rest of a sentence.
-    const MAX_SHOWN: usize = 60;
     let bytes = bytes.as_ref();
     match bytes.len() {
         0 => "nothing".to_owned(),
         len if len > MAX_SHOWN => format!("\"{}\"… ({len} bytes)", bytes[..MAX_SHOWN].escape_ascii()),
         _ => format!("\"{}\"", bytes.escape_ascii()),
+    }
+}
+
+/// What a device says for people to read, on one line, cut where it goes on and on.
+#[must_use]
+pub fn sentence(text: &str) -> String {
+    let mut shown: String = text.chars().take(MAX_SENTENCE).map(|c| if c.is_control() { ' ' } else { c }).collect();
+    if text.chars().nth(MAX_SENTENCE).is_some() {
+        shown.push('…');
+    }
+    shown
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_comes_from_a_wire_is_shown_short_and_on_one_line() {
+        assert_eq!(excerpt(b""), "nothing");
+        assert_eq!(excerpt(b"a\"\n\xff"), r#""a\"\n\xff""#);
+        assert_eq!(excerpt(vec![b'x'; 5000]), format!("\"{}\"… (5000 bytes)", "x".repeat(60)));
+        assert_eq!(sentence("joint 5\nat its limit"), "joint 5 at its limit");
+        assert_eq!(sentence(&"ä".repeat(5000)), "ä".repeat(240) + "…");
     }
 }

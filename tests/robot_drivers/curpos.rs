@@ -6,7 +6,7 @@ use handeye::device::robot::connect;
 use handeye::device::robot::curpos::http::{self, Response};
 use handeye::device::{DeviceError, Endpoint, MoveState, Readiness, RobotKind, RobotSetup};
 
-use super::fake::{Act, assert_near, expect_error, linear, listen, pose, serve, soon};
+use super::fake::{Act, assert_near, expect_error, expect_timeout, linear, listen, pose, serve, soon};
 
 /// As an R-30iA writes it: blank lines, no zero before the point, a second group.
 const PAGE: &str = "<HTML>\r\n<BODY><PRE>\r\nF Number: F12345\r\nVERSION : HandlingTool\r\n$VERSION: V7.7027\r\nDATE:  08-MAY-20\r\n\r\nCURRENT ROBOT POSITION::\r\nGroup #:  1\r\n \r\nCURRENT JOINT POSITION:\r\nJoint   1:     86.75\r\nJoint   2:      -.50\r\nJoint   3:    -12.00\r\nJoint   4:       .00\r\nJoint   5:    -78.00\r\nJoint   6:      1.25\r\n\r\nFrame #:  3  Tool #:  7\r\nCURRENT USER FRAME POSITION:\r\nX:      1.00\r\nY:      2.00\r\nZ:      3.00\r\nW:      4.00\r\nP:      5.00\r\nR:      6.00\r\nCFG: N U T, 0, 0, 0\r\n\r\nTool #:  7\r\nCURRENT WORLD POSITION:\r\n\r\nX:    622.47\r\nY:      -.06\r\nZ:   -140.50\r\nW:   -179.99\r\nP:      -.00\r\nR:    -87.46\r\nCFG: N U T, 0, 0, 0\r\n\r\nGroup #:  2\r\nCURRENT WORLD POSITION:\r\nX:      9.00\r\n</PRE></BODY></HTML>\r\n";
@@ -97,12 +97,11 @@ fn pages_without_a_pose_are_refused_by_name() {
 #[test]
 fn broken_servers_end_in_a_named_error_by_the_deadline() {
     let is_unexpected = |error: &DeviceError| matches!(error, DeviceError::Unexpected { .. });
-    let is_timeout = |error: &DeviceError| matches!(error, DeviceError::Timeout { .. });
     let is_closed = |error: &DeviceError| matches!(error, DeviceError::Closed { .. });
     let cut = Response { status: 200, body: PAGE.as_bytes().to_vec() }.encode()[..500].to_vec();
     let long = b"HTTP/1.0 200 OK\r\nContent-Length: 999999999999\r\n\r\n".to_vec();
-    expect_error(connect_to(Act::Silence), is_timeout);
-    expect_error(connect_to(Act::Send(cut.clone())), is_timeout);
+    expect_timeout(connect_to(Act::Silence));
+    expect_timeout(connect_to(Act::Send(cut.clone())));
     expect_error(connect_to(Act::SendAndClose(cut)), |error| is_unexpected(error) || is_closed(error));
     expect_error(connect_to(Act::SendAndClose(Vec::new())), |error| is_unexpected(error) || is_closed(error));
     expect_error(connect_to(Act::Send(b"0:success".to_vec())), is_unexpected);

@@ -142,6 +142,16 @@ pub fn assert_near(found: &Transform<Base, Flange>, expected: &Transform<Base, F
     assert!(distance_mm <= tolerance_mm && turn_deg <= tolerance_mm, "{distance_mm} mm, {turn_deg}° apart");
 }
 
+/// Waits for what another thread does.
+#[track_caller]
+pub fn wait_until(mut is_so: impl FnMut() -> bool) {
+    let start = Instant::now();
+    while !is_so() {
+        assert!(start.elapsed() < PATIENCE, "it never comes");
+        thread::yield_now();
+    }
+}
+
 /// Waits for the end of a move.
 pub fn finish(robot: &mut dyn RobotDriver) -> Result<(), DeviceError> {
     let start = Instant::now();
@@ -151,17 +161,22 @@ pub fn finish(robot: &mut dyn RobotDriver) -> Result<(), DeviceError> {
     Ok(())
 }
 
-/// What must hold of a connection to something broken: a named error of this kind, by the deadline.
+/// What must hold of a connection to something broken: an error of this kind, and long before the deadline.
 #[track_caller]
 pub fn expect_error<T>(
     outcome: impl FnOnce(Instant) -> Result<T, DeviceError>,
     is_expected: impl FnOnce(&DeviceError) -> bool,
 ) -> String {
-    /// Beyond the deadline, on a machine that is busy with other tests.
-    const LATENESS: Duration = Duration::from_secs(5);
-    let start = Instant::now();
-    let Err(error) = outcome(start + BRIEF) else { panic!("it went well") };
-    assert!(start.elapsed() < BRIEF + LATENESS, "{:?} late", start.elapsed());
+    let Err(error) = outcome(soon()) else { panic!("it went well") };
     assert!(is_expected(&error), "{error:?}");
     error.to_string()
+}
+
+/// What must hold of a connection to something silent: the error that says so, at the deadline and not before.
+#[track_caller]
+pub fn expect_timeout<T>(outcome: impl FnOnce(Instant) -> Result<T, DeviceError>) {
+    let start = Instant::now();
+    let Err(error) = outcome(start + BRIEF) else { panic!("it went well") };
+    assert!(matches!(error, DeviceError::Timeout { .. }), "{error:?}");
+    assert!((BRIEF..PATIENCE).contains(&start.elapsed()), "{:?} instead of {BRIEF:?}", start.elapsed());
 }

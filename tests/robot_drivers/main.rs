@@ -7,5 +7,6 @@ mod curpos;
 mod fake;
 mod fuzz;
 mod mappdk;
+mod simulated;
 mod ur;
 mod wire;

@@ -6,7 +6,9 @@ use handeye::device::robot::connect;
 use handeye::device::robot::mappdk::messages::{Command, Reply, Xyzwpr, encode_position};
 use handeye::device::{DeviceError, Endpoint, MoveState, Readiness, RobotDriver, RobotKind, RobotSetup};
 
-use super::fake::{Act, Gate, assert_near, expect_error, finish, line, linear, listen, pose, serve, soon};
+use super::fake::{
+    Act, Gate, assert_near, expect_error, expect_timeout, finish, line, linear, listen, pose, serve, soon,
+};
 
 /// Three decimals, times the square root of three.
 const WIRE_MM: f64 = 0.001;
@@ -135,7 +137,7 @@ fn after_a_stop_no_further_piece_is_sent() {
     robot.start_move(&linear(pose([500.0, 100.0, 300.0], [180.0, 0.0, 0.0]), 20.0), soon()).expect("taken");
     let busy = robot.start_move(&linear(pose([500.0, 1.0, 300.0], [180.0, 0.0, 0.0]), 20.0), soon());
     assert!(matches!(busy, Err(DeviceError::NotReady { .. })), "{busy:?}");
-    expect_error(|deadline| robot.stop(deadline), |error| matches!(error, DeviceError::Timeout { .. }));
+    expect_timeout(|deadline| robot.stop(deadline));
     fake.gate.open(1);
     robot.stop(soon()).expect("the piece ends");
     assert_eq!(robot.move_state(soon()), Ok(MoveState::Done));
@@ -181,15 +183,14 @@ fn refusals_say_what_to_do_and_leave_the_connection_usable() {
 fn broken_servers_end_in_a_named_error_by_the_deadline() {
     let success = || Act::Send(b"0:success".to_vec());
     let is_unexpected = |error: &DeviceError| matches!(error, DeviceError::Unexpected { .. });
-    let is_timeout = |error: &DeviceError| matches!(error, DeviceError::Timeout { .. });
     let is_closed = |error: &DeviceError| matches!(error, DeviceError::Closed { .. });
-    expect_error(connect_to(Act::Silence, Act::Silence), is_timeout);
-    expect_error(connect_to(Act::Send(b"0:succ".to_vec()), Act::Silence), is_timeout);
+    expect_timeout(connect_to(Act::Silence, Act::Silence));
+    expect_timeout(connect_to(Act::Send(b"0:succ".to_vec()), Act::Silence));
     expect_error(connect_to(Act::SendAndClose(Vec::new()), Act::Silence), is_closed);
     expect_error(connect_to(Act::SendAndClose(b"0:success".to_vec()), Act::Silence), is_closed);
     expect_error(connect_to(Act::Send(b"HTTP/1.0 400 Bad Request\r\n".to_vec()), Act::Silence), is_unexpected);
-    expect_error(connect_to(success(), Act::Silence), is_timeout);
-    expect_error(connect_to(success(), Act::Send(b"0:x=1.000,y=".to_vec())), is_timeout);
+    expect_timeout(connect_to(success(), Act::Silence));
+    expect_timeout(connect_to(success(), Act::Send(b"0:x=1.000,y=".to_vec())));
     expect_error(connect_to(success(), Act::SendAndClose(b"0:x=1.000,y=".to_vec())), is_closed);
     expect_error(connect_to(success(), Act::Send(b"\x00\x00\x01".to_vec())), is_unexpected);
     expect_error(connect_to(success(), Act::Send(vec![b'0'; 300])), is_unexpected);

@@ -4,7 +4,7 @@ use std::io::{Read as _, Write as _};
 use std::net::{TcpListener, TcpStream};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use handeye::device::robot::connect;
 use handeye::device::robot::ur::dashboard::{GREETING, Question, encode_remote_control};
@@ -13,7 +13,9 @@ use handeye::device::robot::ur::script::{Program, Statement, UrPose};
 use handeye::device::{DeviceError, Endpoint, MoveState, Readiness, RobotDriver, RobotKind, RobotSetup};
 use handeye::geometry::{Base, Flange, Tcp, Transform, Vec3};
 
-use super::fake::{Act, PATIENCE, assert_near, expect_error, finish, line, linear, listen, pose, serve, soon};
+use super::fake::{
+    Act, assert_near, expect_error, expect_timeout, finish, line, linear, listen, pose, serve, soon, wait_until,
+};
 
 /// The tool point lies 100 mm ahead of the flange and is turned.
 const OFFSET: UrPose = UrPose([0.01, -0.02, 0.1, 0.0, 0.3, 0.0]);
@@ -25,6 +27,7 @@ struct State {
     knows_offset: bool,
     /// What the dashboard answers; `None`: it does not know the question.
     is_remote: Option<bool>,
+    ignores_programs: bool,
     robot_mode: i32,
     safety_mode: i32,
     program: Option<Program>,
@@ -42,6 +45,7 @@ impl Fake {
             base_from_tcp: base_from_flange * flange_from_tcp,
             knows_offset: true,
             is_remote: Some(true),
+            ignores_programs: false,
             robot_mode: 7,
             safety_mode: 1,
             program: None,
@@ -82,6 +86,9 @@ impl Fake {
         let program = Program::parse(&String::from_utf8_lossy(text)).expect("a program");
         let mut state = self.state();
         state.heard.push(program.clone());
+        if state.ignores_programs {
+            return Act::Silence;
+        }
         match program.statements.as_slice() {
             [Statement::MoveL { .. }, ..] => state.program = Some(program),
             [Statement::StopL { .. }, Statement::WriteOutputInteger { register: 24, value }] => {
@@ -94,23 +101,16 @@ impl Fake {
 
     /// Ends the program under way: at its target, or where it is.
     fn end_program(&self, does_arrive: bool) {
-        let start = Instant::now();
-        loop {
-            assert!(start.elapsed() < PATIENCE, "no program came");
-            let mut state = self.state();
-            if let Some(program) = state.program.take() {
-                let [Statement::MoveL { pose, .. }, Statement::WriteOutputInteger { register: 24, value }] =
-                    program.statements[..]
-                else {
-                    panic!("{program:?}");
-                };
-                if does_arrive {
-                    (state.base_from_tcp, state.mark) = (pose.pose(), value);
-                }
-                return;
-            }
-            drop(state);
-            thread::yield_now();
+        wait_until(|| self.state().program.is_some());
+        let mut state = self.state();
+        let program = state.program.take();
+        let Some([Statement::MoveL { pose, .. }, Statement::WriteOutputInteger { register: 24, value }]) =
+            program.as_ref().map(|program| &program.statements[..])
+        else {
+            panic!("{program:?}");
+        };
+        if does_arrive {
+            (state.base_from_tcp, state.mark) = (pose.pose(), *value);
         }
     }
 
@@ -262,6 +262,13 @@ fn a_stop_replaces_the_move_and_waits_for_the_stand() {
     let last = fake.state().heard.last().cloned().expect("a program");
     assert!(matches!(last.statements[0], Statement::StopL { .. }), "{last:?}");
     robot.stop(soon()).expect("standing already");
+
+    // A robot that nobody looks after any more stops too.
+    robot.start_move(&linear(shifted(50.0), 10.0), soon()).expect("taken");
+    assert_eq!(robot.move_state(soon()), Ok(MoveState::Moving));
+    wait_until(|| fake.state().program.is_some());
+    drop(robot);
+    wait_until(|| fake.state().program.is_none());
 }
 
 #[test]
@@ -269,7 +276,7 @@ fn a_program_that_ends_early_is_refused_with_a_reason() {
     let fake = Fake::new(start_pose());
     let mut robot = robot_at(fake.start());
     robot.start_move(&linear(shifted(50.0), 10.0), soon()).expect("taken");
-    while !robot.report(soon()).expect("a state").is_moving.expect("told") {}
+    wait_until(|| robot.report(soon()).expect("a state").is_moving == Some(true));
     assert_eq!(robot.move_state(soon()), Ok(MoveState::Moving));
     fake.end_program(false);
     let text = finish(&mut *robot).expect_err("it did not arrive").to_string();
@@ -306,6 +313,26 @@ fn states_without_motion_are_named_with_a_remedy() {
 }
 
 #[test]
+fn a_program_of_somebody_else_is_not_ended_by_a_move() {
+    let fake = Fake::new(start_pose());
+    let mut robot = robot_at(fake.start());
+    let others = Statement::MoveL { pose: OFFSET, acceleration_m_s2: 1.0, speed_m_s: 0.1, time_s: 0.0 };
+    fake.state().program = Some(Program::single(others));
+    let error = robot.start_move(&linear(shifted(1.0), 10.0), soon()).expect_err("busy");
+    assert!(matches!(&error, DeviceError::NotReady { found, .. } if found.contains("program")), "{error:?}");
+    fake.state().program = None;
+    robot.start_move(&linear(shifted(1.0), 10.0), soon()).expect("taken");
+}
+
+#[test]
+fn in_local_control_a_stop_is_no_more_than_a_look() {
+    let fake = Fake::new(start_pose());
+    fake.state().is_remote = Some(false);
+    fake.state().ignores_programs = true;
+    robot_at(fake.start()).stop(soon()).expect("it stands");
+}
+
+#[test]
 fn a_protective_stop_ends_the_move() {
     let fake = Fake::new(start_pose());
     let mut robot = robot_at(fake.start());
@@ -320,7 +347,6 @@ fn a_protective_stop_ends_the_move() {
 #[test]
 fn broken_controllers_end_in_a_named_error_by_the_deadline() {
     let is_unexpected = |error: &DeviceError| matches!(error, DeviceError::Unexpected { .. });
-    let is_timeout = |error: &DeviceError| matches!(error, DeviceError::Timeout { .. });
     let is_closed = |error: &DeviceError| matches!(error, DeviceError::Closed { .. });
     let accepted = ServerPacket::VersionAccepted(true).encode();
     let answered = |act: Act| {
@@ -336,9 +362,9 @@ fn broken_controllers_end_in_a_named_error_by_the_deadline() {
         );
         move |deadline| connect(&setup(endpoint), deadline).map(drop)
     };
-    expect_error(answered(Act::Silence), is_timeout);
-    expect_error(answered(Act::Send(accepted[..2].to_vec())), is_timeout);
-    expect_error(answered(Act::Send(accepted.clone())), is_timeout);
+    expect_timeout(answered(Act::Silence));
+    expect_timeout(answered(Act::Send(accepted[..2].to_vec())));
+    expect_timeout(answered(Act::Send(accepted.clone())));
     expect_error(answered(Act::SendAndClose(accepted[..3].to_vec())), is_closed);
     expect_error(answered(Act::SendAndClose(accepted)), is_closed);
     expect_error(answered(Act::Send(b"\x00\x00\x00".to_vec())), is_unexpected);

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use crate::device::error::DeviceError;
+use crate::device::error::{DeviceError, sentence};
 use crate::device::setup::Endpoint;
 use crate::device::wire::Wire;
 
@@ -72,7 +72,8 @@ impl BridgeConnection {
         }
         match reply.answer {
             Answer::Refused { found, remedy } => {
-                let remedy = if remedy.is_empty() { "see the bridge's own output".to_owned() } else { remedy };
+                let remedy = if remedy.is_empty() { "see the bridge's own output" } else { &remedy };
+                let (found, remedy) = (sentence(&found), sentence(remedy));
                 Err(DeviceError::Refused { device, request: word.to_owned(), found, remedy })
             }
             answer => Ok(answer),

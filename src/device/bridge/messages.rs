@@ -4,7 +4,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use crate::device::error::MessageError;
+use crate::device::error::{MessageError, sentence};
 use crate::geometry::{Base, Flange, PoseConvention, Profile, Transform};
 
 /// The version of the protocol; in every message as `bridge`.
@@ -295,7 +295,9 @@ fn parse_line<T: DeserializeOwned>(line: &[u8]) -> Result<T, MessageError> {
     struct Versioned {
         bridge: u32,
     }
-    let wrong = |error: serde_json::Error| MessageError::new(line, format!("a line of the text bridge ({error})"));
+    let wrong = |error: serde_json::Error| {
+        MessageError::new(line, format!("a line of the text bridge ({})", sentence(&error.to_string())))
+    };
     let Versioned { bridge } = serde_json::from_slice(line).map_err(wrong)?;
     if bridge != VERSION {
         return Err(MessageError::new(format!("version {bridge}"), format!("version {VERSION} of the text bridge")));

@@ -1,17 +1,20 @@
 //! Drives any robot by the text bridge.
 
-use std::time::Instant;
+use std::thread;
+use std::time::{Duration, Instant};
 
 use crate::device::bridge::BridgeConnection;
 use crate::device::bridge::messages::{Answer, Ask, BridgePose, BridgedDevice, Hello, RobotState};
 use crate::device::driver::{LinearMove, MoveState, Readiness, RobotDriver, RobotReport};
-use crate::device::error::{DeviceError, MessageError};
+use crate::device::error::{DeviceError, MessageError, sentence};
 use crate::device::setup::Endpoint;
 use crate::geometry::{Base, Flange, PoseConvention, Transform};
 
 use super::arrival::check_arrival;
 
 const DEVICE: &str = "Robot (text bridge)";
+/// Between two looks at whether the robot stands.
+const LOOK_EVERY: Duration = Duration::from_millis(10);
 const REMEDY: &str = "compare the bridge's messages with docs/bridge.md";
 
 /// A robot by the text bridge.
@@ -67,7 +70,10 @@ impl RobotDriver for BridgeRobot {
         let (state, base_from_flange) = self.state(deadline)?;
         let readiness = match state.not_ready {
             _ if !self.hello.can_move => Readiness::ReadOnly,
-            Some(found) => Readiness::NotReady { found, remedy: "see the robot's pendant, or the bridge's own output" },
+            Some(found) => Readiness::NotReady {
+                found: sentence(&found),
+                remedy: "see the robot's pendant, or the bridge's own output",
+            },
             None => Readiness::Ready,
         };
         Ok(RobotReport {
@@ -75,7 +81,7 @@ impl RobotDriver for BridgeRobot {
             joints_deg: state.joints_deg,
             is_moving: Some(state.is_moving),
             readiness,
-            tool: self.hello.tool.clone(),
+            tool: sentence(&self.hello.tool),
             resolution_mm: self.hello.resolution_mm,
             received_at: Instant::now(),
         })
@@ -101,6 +107,7 @@ impl RobotDriver for BridgeRobot {
         if let Some(found) = state.move_failed {
             self.target = None;
             let remedy = "see the robot's pendant, or the bridge's own output".to_owned();
+            let found = sentence(&found);
             return Err(DeviceError::Refused { device: DEVICE, request: "move".to_owned(), found, remedy });
         }
         if state.is_moving {
@@ -124,10 +131,12 @@ impl RobotDriver for BridgeRobot {
             if !state.is_moving {
                 return Ok(());
             }
-            if Instant::now() >= deadline {
+            let left = deadline.saturating_duration_since(Instant::now());
+            if left.is_zero() {
                 let waited = start.elapsed();
                 return Err(DeviceError::Timeout { device: DEVICE, request: "stop".to_owned(), waited });
             }
+            thread::sleep(LOOK_EVERY.min(left));
         }
     }
 }

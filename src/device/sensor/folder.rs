@@ -173,7 +173,7 @@ impl FolderDriver {
 
     fn list(&mut self, now: Instant, deadline: Instant) -> Result<(), DeviceError> {
         let mut fresh = HashMap::new();
-        let mut names = Vec::new();
+        let (mut names, mut num_seen) = (Vec::new(), 0);
         for entry in fs::read_dir(&self.folder).map_err(|error| self.lost(&error))? {
             if Instant::now() >= deadline {
                 let request = format!("list of {}", self.folder.display());
@@ -182,8 +182,10 @@ impl FolderDriver {
             let entry = entry.map_err(|error| self.lost(&error))?;
             let name = entry.file_name();
             let is_last = self.last.as_ref().is_some_and(|last| last.name == name);
+            let is_seen = self.seen.contains(&name);
+            num_seen += usize::from(is_seen);
             // Of what is done with only the name is looked at, so that thousands of old files cost next to nothing.
-            if is_last || !(self.seen.contains(&name) || is_left_alone(&name)) {
+            if is_last || !(is_seen || is_left_alone(&name)) {
                 // A file that is gone again is no error: programs rename what they have written.
                 let Ok(metadata) = fs::metadata(entry.path()) else { continue };
                 if metadata.is_file()
@@ -196,7 +198,7 @@ impl FolderDriver {
         }
         self.fresh = fresh;
         // A name may be used again once its file is gone.
-        if names.len() < self.seen.len() {
+        if num_seen < self.seen.len() {
             let here: HashSet<OsString> = names.into_iter().collect();
             self.seen.retain(|name| here.contains(name));
         }
@@ -224,7 +226,7 @@ impl FolderDriver {
             .fresh
             .iter()
             .filter(|(_, fresh)| now.saturating_duration_since(fresh.since) >= QUIET)
-            .map(|(n, f)| (n.clone(), f.clone()))
+            .map(|(name, fresh)| (name.clone(), fresh.clone()))
             .collect();
         complete.sort_by_cached_key(|(name, fresh)| order_of(name, fresh));
         let Some((name, fresh)) = complete.last() else { return Ok(()) };
@@ -234,7 +236,7 @@ impl FolderDriver {
             Err(error) => return Err(error),
         };
         self.last = Some(Last { name: name.clone(), stamp: fresh.stamp, under_way_at: None });
-        self.num_files = complete.len().try_into().map_or(u32::MAX, |num| self.num_files.wrapping_add(num));
+        self.num_files = self.num_files.wrapping_add(u32::try_from(complete.len()).unwrap_or(u32::MAX));
         for (name, _) in complete {
             self.fresh.remove(&name);
             self.seen.insert(name);

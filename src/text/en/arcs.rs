@@ -38,6 +38,8 @@ pub const RADIUS_AGAINST_STEP: &str = "Radius against step";
 pub const X_AXIS: &str = "x / mm";
 /// Axis title of the range axis; the sensor is at the top of the plot.
 pub const Z_AXIS: &str = "z / mm   (away from sensor ↓)";
+/// The same in a low plot.
+pub const Z_AXIS_SHORT: &str = "z / mm ↓";
 /// Axis title.
 pub const RESIDUAL_AXIS: &str = "residual / µm";
 /// Axis title.

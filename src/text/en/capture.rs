@@ -23,9 +23,9 @@ pub const PRACTISE_HINT: &str =
 /// Button: goes to the capture step.
 pub const CONNECT_CELL: &str = "Connect to a cell…";
 /// Badge of the simulated cell.
-pub const PRACTICE: &str = "Practice on a simulated cell";
+pub const PRACTICE: &str = "Simulated cell";
 /// What that means.
-pub const PRACTICE_HINT: &str = "Nothing real moves. What is captured goes into a session of its own.";
+pub const PRACTICE_HINT: &str = "Practice: nothing real moves. What is captured goes into a session of its own.";
 /// Button.
 pub const END_PRACTICE: &str = "End practice";
 

@@ -13,6 +13,8 @@ use super::model::{ProfileModel, SectionModel};
 
 /// The part of the height that the profile takes; its residuals get the rest.
 const PROFILE_PART: f32 = 0.62;
+/// Height of a plot that has room for the whole title of its z axis, points.
+const TITLE_NEEDS: f32 = 200.0;
 /// Radius of a point of a profile, points.
 const POINT_RADIUS: f32 = 1.6;
 /// Points closer than this, points on the screen, are painted once.
@@ -57,7 +59,9 @@ pub fn show(ui: &mut Ui, model: &ProfileModel, shows_whole: bool, is_fitted: &mu
 /// Shows the profile alone, in a view that the caller chooses; `name` tells its plot from others.
 pub fn show_alone(ui: &mut Ui, name: &'static str, model: &ProfileModel, extent: Extent, is_fitted: &mut bool) {
     charts::legend(ui, &entries(ui, model));
-    let mut chart = Chart::new(Id::unique(name), text::X_AXIS, text::Z_AXIS, ui.available_height(), extent);
+    let height = ui.available_height();
+    let z_title = if height < TITLE_NEEDS { text::Z_AXIS_SHORT } else { text::Z_AXIS };
+    let mut chart = Chart::new(Id::unique(name), text::X_AXIS, z_title, height, extent);
     chart.invert_y = model.z_grows_away;
     chart.has_equal_scales = true;
     let canvas = chart.show(ui, is_fitted);

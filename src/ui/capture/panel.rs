@@ -8,7 +8,7 @@ use egui::{Rect, ScrollArea, Ui, UiBuilder};
 use crate::app::Command;
 use crate::app::cell::{CellCommand, CellSettings};
 use crate::device::SearchReport;
-use crate::geometry::Profile;
+use crate::geometry::{Profile, Vec3};
 use crate::session::Target;
 use crate::ui::actions::Action;
 use crate::ui::arcs::model::ProfileModel;
@@ -24,7 +24,7 @@ const LEFT_WIDTH: f32 = 304.0;
 /// The least of it where the window is narrow.
 const LEAST_LEFT_WIDTH: f32 = 264.0;
 /// The least height of the plots; below, the column scrolls.
-const LEAST_PLOT_HEIGHT: f32 = 264.0;
+const LEAST_PLOT_HEIGHT: f32 = 284.0;
 
 /// What the panel remembers between frames.
 #[derive(Debug)]
@@ -38,6 +38,8 @@ pub struct CaptureState {
     pub(super) radius_mm: f64,
     /// Whether the mounting is to be seen in the next frame.
     pub(super) reveals_mounting: bool,
+    /// Where the proposal of the last frame was, in the base.
+    pub(super) seen_proposal: Option<Vec3>,
 }
 
 impl Default for CaptureState {
@@ -50,6 +52,7 @@ impl Default for CaptureState {
             is_curve_fitted: true,
             radius_mm: 15.0,
             reveals_mounting: false,
+            seen_proposal: None,
         }
     }
 }

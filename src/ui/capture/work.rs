@@ -23,26 +23,40 @@ const SIDE_BY_SIDE_FROM: f32 = 800.0;
 
 /// Height of all cards in so much width, points.
 pub fn height(width: f32) -> f32 {
-    if width >= SIDE_BY_SIDE_FROM { HEIGHT } else { 3.0f32.mul_add(HEIGHT, 2.0 * theme::GAP) }
+    if width >= SIDE_BY_SIDE_FROM { HEIGHT } else { 2.0f32.mul_add(HEIGHT, theme::GAP) }
 }
 
 /// Shows the cards.
 pub fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let cards: [fn(&mut Ui, &mut Desk<'_>); 3] = [station, next, run];
-    let width = ui.available_width();
-    if width < SIDE_BY_SIDE_FROM {
-        for card in cards {
-            card(ui, desk);
+    if ui.available_width() >= SIDE_BY_SIDE_FROM {
+        row(ui, desk, &[(station, 0.26), (next, 0.4), (run, 0.34)]);
+    } else {
+        row(ui, desk, &[(station, 0.46), (run, 0.54)]);
+        let top = ui.cursor().top();
+        next(ui, desk);
+        // A new proposal is to be looked at before it is gone to.
+        let proposal = desk.view.cell.proposal.as_ref();
+        let proposed = proposal.map(|proposal| proposal.station.base_from_flange.translation_mm());
+        if proposed.is_some() && proposed != desk.state.seen_proposal {
+            ui.scroll_to_rect(ui.min_rect().with_min_y(top), None);
         }
-        return;
+        desk.state.seen_proposal = proposed;
     }
+}
+
+type Card = fn(&mut Ui, &mut Desk<'_>);
+
+/// Cards beside each other, each with its part of the width.
+fn row(ui: &mut Ui, desk: &mut Desk<'_>, cards: &[(Card, f32)]) {
     let area = ui.available_rect_before_wrap();
     let area = area.with_max_y(area.top() + HEIGHT);
-    let [first, second] = [0.26, 0.66].map(|part: f32| area.left() + (width * part).round());
-    let edges = [(area.left(), first), (first + theme::GAP, second), (second + theme::GAP, area.right())];
-    for (card, (left, right)) in cards.into_iter().zip(edges) {
+    let (mut left, mut part_before) = (area.left(), 0.0);
+    for (card, part) in cards {
+        part_before += part;
+        let right = area.left() + ((area.width() + theme::GAP) * part_before).round() - theme::GAP;
         let mut inside = ui.new_child(UiBuilder::new().max_rect(area.with_min_x(left).with_max_x(right)));
         card(&mut inside, desk);
+        left = right + theme::GAP;
     }
     ui.allocate_rect(area, egui::Sense::hover());
 }

@@ -1,6 +1,7 @@
 //! The live cell behind the window: its links, its routine, its run, and what they bring into the document.
 
 mod captures;
+mod choose;
 mod links;
 mod practice;
 mod proposals;
@@ -10,12 +11,12 @@ mod run;
 use std::time::Instant;
 
 use crate::app::cell::{Activity, CellCommand, CellView};
-use crate::device::sim::SimCell;
 use crate::device::{Deadlines, RobotWorker, SensorWorker};
 use crate::text::cell as words;
 
 use self::captures::Measuring;
 use self::links::Armed;
+use self::practice::Practice;
 use self::proposals::Proposing;
 use self::replay::Replay;
 use self::run::Run;
@@ -32,7 +33,7 @@ pub(super) struct LiveCell {
     measuring: Option<Measuring>,
     proposing: Proposing,
     run: Option<Run>,
-    practice: Option<SimCell>,
+    practice: Option<Practice>,
     replay: Option<Replay>,
 }
 

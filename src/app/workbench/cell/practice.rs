@@ -9,6 +9,13 @@ use crate::text::cell as words;
 
 use super::super::{NoticeKind, Workbench};
 
+/// The simulated cell, for as long as it runs.
+pub(super) struct Practice {
+    /// What was set for the cell that is not simulated.
+    own_mounting: Option<RoughMounting>,
+    _cell: SimCell,
+}
+
 impl Workbench {
     pub(super) fn practise(&mut self) {
         self.practise_with(&SimOptions::default());
@@ -25,21 +32,20 @@ impl Workbench {
             }
         };
         self.open_session(session_for(&cell.truth), None);
+        let own_mounting = self.cell.view.settings.mounting;
         self.cell.view.settings.mounting = Some(mounting(&cell.truth.rough_flange_from_sensor));
         self.connect_robot(cell.robot_setup.clone());
         self.connect_sensor(cell.sensor_setup.clone());
-        self.cell.practice = Some(cell);
+        self.cell.practice = Some(Practice { own_mounting, _cell: cell });
         self.cell.view.is_practice = true;
     }
 
     /// Ends the simulated cell, if there is one; its session stays.
     pub(super) fn end_practice(&mut self) {
-        if self.cell.practice.is_none() {
-            return;
-        }
+        let Some(practice) = self.cell.practice.take() else { return };
         self.disconnect_robot();
         self.disconnect_sensor();
-        self.cell.practice = None;
+        self.cell.view.settings.mounting = practice.own_mounting;
         self.cell.view.is_practice = false;
     }
 }

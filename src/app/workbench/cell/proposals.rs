@@ -3,19 +3,16 @@
 use crate::app::cell::{Proposal, RoughMounting};
 use crate::app::jobs::{JobOutcome, Slot};
 use crate::calibrate::{Noise, Reading as MeasuredReading};
-use crate::device::{Arming, LinkState, MotionRefusal, RobotReport};
+use crate::device::{LinkState, MotionRefusal};
 use crate::fit::ArcFit;
 use crate::geometry::{Base, Flange, Profile, Rigid, Transform, Vec3};
-use crate::plan::{Limits, MeasuredStation, PlannedStation, RoughCell, View, next_rough};
+use crate::plan::{MeasuredStation, PlannedStation, RoughCell, View};
 use crate::session::Reading;
 use crate::text::cell as words;
 
 use super::super::{NoticeKind, Workbench};
+use super::choose::{Basis, Chooser, Chosen};
 
-/// Rough poses that are tried before it is said that none can be gone to.
-const MOST_ROUGH_TRIES: usize = 8;
-/// A pose is that of an avoided one if it is turned against it by less than this, degrees.
-const SAME_POSE_DEG: f64 = 3.0;
 /// The ball's centre stays so far inside the ends of the line that its arc does too, radii ...
 const ARC_HALF_WIDTH_RADII: f64 = 0.6;
 /// ... but may always be this far from the middle, radii.
@@ -28,57 +25,33 @@ const HALF_RANGE_RADII: f64 = 0.4;
 pub(super) struct Proposing {
     /// It is wanted, and waits for the plan that follows the last capture.
     is_waiting: bool,
-    rough: Slot<Result<PlannedStation, String>>,
+    choosing: Slot<Result<Chosen, String>>,
     /// Poses that were not wanted, or where nothing could be measured.
     avoided: Vec<Transform<Base, Flange>>,
+    /// How many of them in a row the robot would not go to.
+    num_refused: u32,
 }
 
 impl Proposing {
     pub const fn is_wanted(&self) -> bool {
-        self.is_waiting || self.rough.is_running()
+        self.is_waiting || self.choosing.is_running()
     }
-}
 
-/// Why a pose cannot be gone to, apart from the arm switch.
-fn obstacle(
-    arming: Option<&Arming>,
-    report: Option<&RobotReport>,
-    to: &Transform<Base, Flange>,
-) -> Option<MotionRefusal> {
-    let (arming, report) = (arming?, report?);
-    arming.check(&report.readiness, &report.base_from_flange, to, arming.limits.transit_speed_mm_s).err()
-}
+    /// Nothing was measured at this pose: it is not proposed again as long as there are others.
+    pub fn avoid(&mut self, pose: Transform<Base, Flange>) {
+        self.avoided.push(pose);
+    }
 
-/// Everything that a rough plan needs.
-struct RoughPlan {
-    cell: RoughCell,
-    stations: Vec<MeasuredStation>,
-    avoided: Vec<Transform<Base, Flange>>,
-    view: View,
-    limits: Limits,
-    arming: Option<Arming>,
-    report: Option<RobotReport>,
-}
+    /// The robot would not go to this pose. Answers how many in a row that were.
+    pub fn note_refused(&mut self, pose: Transform<Base, Flange>) -> u32 {
+        self.avoid(pose);
+        self.num_refused += 1;
+        self.num_refused
+    }
 
-impl RoughPlan {
-    /// The first pose that can be gone to; if there is none, the first of all.
-    fn next(mut self) -> Result<PlannedStation, String> {
-        let mut first = None;
-        for _ in 0..MOST_ROUGH_TRIES {
-            let next = next_rough(&self.cell, &self.stations, &self.avoided, &self.view, &self.limits);
-            let station = match next {
-                Ok((station, _)) => station,
-                Err(refusal) if first.is_none() => return Err(refusal.to_string()),
-                Err(_) => break,
-            };
-            let to = station.base_from_flange;
-            if obstacle(self.arming.as_ref(), self.report.as_ref(), &to).is_none() {
-                return Ok(station);
-            }
-            self.avoided.push(to);
-            first.get_or_insert(station);
-        }
-        first.ok_or_else(|| words::NO_BALL_SEEN.to_owned())
+    /// A station was measured: where the robot can go is known again.
+    pub const fn note_measured(&mut self) {
+        self.num_refused = 0;
     }
 }
 
@@ -96,32 +69,33 @@ impl Workbench {
     /// Another one than that which is proposed.
     pub(super) fn skip_proposal(&mut self) {
         if let Some(proposal) = self.cell.view.proposal.take() {
-            self.avoid(proposal.station.base_from_flange);
+            self.cell.proposing.avoid(proposal.station.base_from_flange);
         }
         self.want_proposal();
-    }
-
-    /// Does not propose this pose again as long as there are others.
-    pub(super) fn avoid(&mut self, pose: Transform<Base, Flange>) {
-        self.cell.proposing.avoided.push(pose);
     }
 
     pub(super) fn forget_proposal(&mut self) {
         self.cell.view.proposal = None;
         self.cell.proposing.is_waiting = false;
-        self.cell.proposing.rough.cancel();
+        self.cell.proposing.choosing.cancel();
     }
 
     /// Works out a proposal that is wanted, once the plan that follows the last capture is there.
     pub(super) fn poll_proposal(&mut self) -> bool {
-        if let Some(outcome) = self.cell.proposing.rough.poll() {
+        if let Some(outcome) = self.cell.proposing.choosing.poll() {
             match outcome {
-                JobOutcome::Done(Ok(station)) => {
-                    let reason = words::reason_of_rough(&station);
+                JobOutcome::Done(Ok((station, reason))) => {
                     self.cell.view.proposal = Some(self.proposal_of(station, reason));
                 }
-                JobOutcome::Done(Err(reason)) => self.take_no_proposal(reason),
-                broken => self.notify_broken("planning", &broken),
+                JobOutcome::Done(Err(reason)) => {
+                    // Once round: all are offered again.
+                    self.cell.proposing.avoided.clear();
+                    self.take_no_proposal(reason);
+                }
+                broken => {
+                    self.notify_broken("planning", &broken);
+                    self.end_run(Some(words::NO_PROPOSAL.to_owned()));
+                }
             }
             return true;
         }
@@ -129,12 +103,18 @@ impl Workbench {
             return false;
         }
         self.cell.proposing.is_waiting = false;
-        if let Some((station, reason)) = self.planned() {
-            self.cell.view.proposal = Some(self.proposal_of(station, reason));
-            return true;
-        }
-        match self.rough_plan() {
-            Ok(plan) => self.cell.proposing.rough.start("propose", &self.wake, move |_| plan.next()),
+        match self.basis() {
+            Ok(basis) => {
+                let mut chooser = Chooser {
+                    basis,
+                    avoided: self.cell.proposing.avoided.clone(),
+                    limits: self.plan_limits,
+                    arming: self.arming(),
+                    report: self.cell.view.robot.latest.clone(),
+                };
+                (0..self.cell.proposing.num_refused).for_each(|_| chooser.narrow());
+                self.cell.proposing.choosing.start("propose", &self.wake, move |_| chooser.choose());
+            }
             Err(reason) => self.take_no_proposal(reason),
         }
         true
@@ -146,29 +126,6 @@ impl Workbench {
         } else {
             self.notify(NoticeKind::Error, reason);
         }
-    }
-
-    /// Of the plan for the solution: the best station that is not avoided and can be gone to.
-    fn planned(&mut self) -> Option<(PlannedStation, String)> {
-        let stations = &self.current_plan()?.stations;
-        let avoided = &self.cell.proposing.avoided;
-        let is_avoided = |station: &&PlannedStation| {
-            let pose = station.base_from_flange.rotation();
-            avoided.iter().any(|avoided| avoided.rotation().angle_to(&pose).to_degrees() < SAME_POSE_DEG)
-        };
-        let (arming, report) = (self.arming(), self.cell.view.robot.latest.as_ref());
-        let is_free =
-            |station: &&PlannedStation| obstacle(arming.as_ref(), report, &station.base_from_flange).is_none();
-        let others = || stations.iter().filter(|station| !is_avoided(station));
-        let are_all_avoided = others().next().is_none();
-        let chosen = others().find(is_free).or_else(|| others().next()).or_else(|| stations.first())?.clone();
-        if are_all_avoided {
-            // Once round: they are all offered again.
-            self.cell.proposing.avoided.clear();
-        }
-        let now_mm = self.current_plan().and_then(|plan| plan.workspace_point_std_mm);
-        let reason = words::reason_of_planned(&chosen, now_mm);
-        Some((chosen, reason))
     }
 
     fn proposal_of(&self, station: PlannedStation, reason: String) -> Proposal {
@@ -219,8 +176,11 @@ impl Workbench {
         self.pause_run(true);
     }
 
-    /// What the rough plan goes by: the mounting as it was said, and where the ball was seen.
-    fn rough_plan(&self) -> Result<RoughPlan, String> {
+    /// What the next station is chosen by.
+    fn basis(&self) -> Result<Basis, String> {
+        if let (Some(plan), Some((_, problem, results))) = (self.current_plan(), self.case()) {
+            return Ok(Basis::Solved { problem, results, planned: plan.clone() });
+        }
         let (Some(document), Some(ball)) = (&self.document, self.ball()) else {
             return Err(words::NO_SESSION.to_owned());
         };
@@ -261,15 +221,7 @@ impl Workbench {
             noise,
             looks_along_in_base,
         };
-        Ok(RoughPlan {
-            cell,
-            stations,
-            avoided: self.cell.proposing.avoided.clone(),
-            view,
-            limits: self.plan_limits,
-            arming: self.arming(),
-            report: self.cell.view.robot.latest.clone(),
-        })
+        Ok(Basis::Rough { cell, stations, view })
     }
 
     /// The largest section of each station; without stations that which is seen now.

@@ -69,9 +69,10 @@ impl MappdkRobot {
             is_linear: true,
             values: values.to_vec(),
         });
-        self.commands.send(command, deadline)?;
-        motion.piece_sent_at = Instant::now();
+        // Of a piece that could not be sent whole nobody knows whether it runs: a stop waits for it.
         motion.is_piece_running = true;
+        motion.piece_sent_at = Instant::now();
+        self.commands.send(command, deadline)?;
         Ok(true)
     }
 }

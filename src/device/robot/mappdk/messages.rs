@@ -16,7 +16,7 @@ pub const MAX_REPLY_BYTES: usize = 254;
 pub const MAX_COMMAND_BYTES: usize = 512;
 
 /// The errors that the server is known to answer.
-pub const KNOWN_ERRORS: [&str; 11] = [
+pub const KNOWN_ERRORS: [&str; 12] = [
     "position-is-not-reachable",
     "PR[81]-was-not-set",
     "R[81]-was-not-set",
@@ -27,6 +27,7 @@ pub const KNOWN_ERRORS: [&str; 11] = [
     "cannot-get-ins_pwr",
     "wrong-rdo-value",
     "wrong-dout-value",
+    "wrong-sys_var-value",
     "wrong-command",
 ];
 

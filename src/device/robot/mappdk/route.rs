@@ -30,7 +30,7 @@ impl Route {
     pub fn new(start: &Transform<Base, Flange>, motion: &LinearMove) -> Self {
         /// Below this a turn takes no time to speak of; a speed of nothing must not divide.
         const LEAST_ROTATION_SPEED_DEG_S: f64 = 0.01;
-        /// So that 50 mm/s, as a quotient, are not rounded down to 49.
+        /// So that 50 mm/s, as a quotient, are not rounded down to 49, nor ten pieces up to eleven.
         const ROUNDING: f64 = 1e-9;
         let target = motion.base_from_flange;
         let distance_mm = (target.translation_mm() - start.translation_mm()).norm();
@@ -43,7 +43,7 @@ impl Route {
         let is_on_the_spot = speed_for_turn_mm_s < 1.0;
         let seconds = if is_on_the_spot { turn_seconds } else { distance_mm / speed_mm_s };
         let num_by_turn = if is_on_the_spot { turn_deg / MAX_PIECE_TURN_DEG } else { 0.0 };
-        let num_pieces = (seconds / MAX_PIECE_SECONDS).max(num_by_turn).ceil().clamp(1.0, 1e6);
+        let num_pieces = ((seconds / MAX_PIECE_SECONDS).max(num_by_turn) - ROUNDING).ceil().clamp(1.0, 1e6);
         Self {
             base_from_start: *start.rigid(),
             target,
@@ -130,7 +130,7 @@ mod tests {
         check(ahead(100.0), 49.9, 10.0, (5, 49));
         check(ahead(5.45), 10.9, 10.0, (2, 10));
         check(ahead(1.0), 0.3, 10.0, (2, 1));
-        check(ahead(0.0), 10.0, 10.0, (1, 1));
+        check(ahead(0.0), 10.0, 10.0, (1, 10));
     }
 
     #[test]

@@ -22,11 +22,13 @@ const RESOLUTION_MM: f64 = 0.001;
 /// Gentle, so that a head on a bracket does not swing.
 const ACCELERATION_M_S2: f64 = 0.3;
 /// Firm: 100 mm/s end within 5 mm.
-const STOP_DECELERATION_M_S2: f64 = 1.0;
+const STOP: Statement = Statement::StopL { deceleration_m_s2: 1.0 };
 /// A ramp up and a ramp down make the fastest moment at most twice the mean.
 const PEAK_OVER_MEAN: f64 = 2.0;
 /// A program that has not begun after this is not going to: the controller takes none, or not from here.
 const START_GRACE: Duration = Duration::from_secs(2);
+/// A program that has done its last statement has ended after this.
+const END_GRACE: Duration = Duration::from_millis(300);
 /// The switch between local and remote control is looked at so often.
 const REMOTE_AGE: Duration = Duration::from_secs(1);
 
@@ -48,7 +50,8 @@ pub struct UrRobot {
 /// A program under way.
 #[derive(Debug)]
 struct Underway {
-    script: Wire,
+    /// By which the program was sent; `None` once the controller has hung up, which does not end the program.
+    script: Option<Wire>,
     target: Transform<Base, Flange>,
     sent_at: Instant,
     has_played: bool,
@@ -83,7 +86,31 @@ impl UrRobot {
         {
             self.dashboard = None;
         }
-        state.readiness(self.dashboard.as_ref().and_then(|dashboard| dashboard.is_remote))
+        state.readiness(self.is_remote())
+    }
+
+    fn is_remote(&self) -> Option<bool> {
+        self.dashboard.as_ref().and_then(|dashboard| dashboard.is_remote)
+    }
+
+    /// The state once no program runs any more. Our last one ends a moment after it has written its mark; one of somebody
+    /// else is not ended by a move of ours.
+    fn idle_state(&mut self, deadline: Instant) -> Result<UrState, DeviceError> {
+        let give_up = deadline.min(Instant::now() + END_GRACE);
+        loop {
+            let state = self.stream.newest(deadline)?;
+            if state.is_program_stopped() {
+                return Ok(state);
+            }
+            if Instant::now() >= give_up {
+                return Err(DeviceError::NotReady {
+                    device: DEVICE,
+                    found: "a program that runs".to_owned(),
+                    needed: "no program",
+                    remedy: "stop the program on the pendant",
+                });
+            }
+        }
     }
 
     /// Sends a program that does this and then writes the next mark.
@@ -133,21 +160,27 @@ impl RobotDriver for UrRobot {
     }
 
     fn start_move(&mut self, motion: &LinearMove, deadline: Instant) -> Result<(), DeviceError> {
-        let state = self.stream.newest(deadline)?;
+        let state = self.idle_state(deadline)?;
         refuse_unready(self.readiness(&state, deadline))?;
         let mut script = self.connect_script(deadline)?;
         self.stream.last_warning = None;
         let statement = move_statement(&state, motion);
         self.run(&mut script, "handeye_move", statement, deadline)?;
-        self.motion =
-            Some(Underway { script, target: motion.base_from_flange, sent_at: Instant::now(), has_played: false });
+        self.motion = Some(Underway {
+            script: Some(script),
+            target: motion.base_from_flange,
+            sent_at: Instant::now(),
+            has_played: false,
+        });
         Ok(())
     }
 
     fn move_state(&mut self, deadline: Instant) -> Result<MoveState, DeviceError> {
         let Some(motion) = &mut self.motion else { return Ok(MoveState::Done) };
         // The interface tells its states to whoever is connected; nobody may let them pile up.
-        motion.script.take_arrived("handeye_move", Duration::ZERO)?;
+        if motion.script.as_mut().is_some_and(|script| script.take_arrived("handeye_move", Duration::ZERO).is_err()) {
+            motion.script = None;
+        }
         let state = self.stream.newest(deadline)?;
         motion.has_played |= !state.is_program_stopped();
         let has_played = motion.has_played;
@@ -191,17 +224,17 @@ impl RobotDriver for UrRobot {
         let request = "handeye_stop";
         let start = Instant::now();
         // Over the same connection, so that it cannot overtake the move.
-        let mut script = match self.motion.take() {
-            Some(motion) => motion.script,
+        let mut script = match self.motion.take().and_then(|motion| motion.script) {
+            Some(script) => script,
             None => self.connect_script(deadline)?,
         };
-        let statement = Statement::StopL { deceleration_m_s2: STOP_DECELERATION_M_S2 };
-        self.run(&mut script, request, statement, deadline)?;
+        self.run(&mut script, request, STOP, deadline)?;
         loop {
             script.take_arrived(request, Duration::ZERO)?;
             let state = self.stream.newest(deadline)?;
-            // In a stop of its own the controller runs no program, and the robot stands.
-            let is_obeyed = state.mark == self.last_mark || matches!(state.readiness(None), Readiness::NotReady { .. });
+            // In a stop of its own, or in local control, the controller runs no program of ours.
+            let is_obeyed =
+                state.mark == self.last_mark || matches!(state.readiness(self.is_remote()), Readiness::NotReady { .. });
             if is_obeyed && state.is_standing() {
                 return Ok(());
             }
@@ -212,6 +245,18 @@ impl RobotDriver for UrRobot {
                     waited: start.elapsed(),
                 });
             }
+        }
+    }
+}
+
+/// A robot that nobody looks after any more has to stop.
+impl Drop for UrRobot {
+    fn drop(&mut self) {
+        /// A few bytes into a buffer that is empty.
+        const PATIENCE: Duration = Duration::from_millis(100);
+        if let Some(mut script) = self.motion.take().and_then(|motion| motion.script) {
+            // Where that fails there is nobody left to be told.
+            let _ = self.run(&mut script, "handeye_stop", STOP, Instant::now() + PATIENCE);
         }
     }
 }

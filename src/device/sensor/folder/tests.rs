@@ -143,9 +143,10 @@ fn what_is_forgotten_does_not_come_back_even_if_it_is_still_being_written() {
 fn a_name_can_be_used_again_after_its_file_is_gone() {
     let mut bench = Bench::new(&[("p1.csv", &sheet(1.0)), ("p2.csv", &sheet(2.0))]);
     fs::remove_file(bench.folder.path().join("p1.csv")).expect("removed");
-    assert_eq!(bench.settled(), Ok(None));
+    bench.write("p3.csv", &sheet(3.0));
+    bench.check_newest(3.0, 1);
     bench.write("p1.csv", &sheet(1.5));
-    bench.check_newest(1.5, 1);
+    bench.check_newest(1.5, 2);
 }
 
 #[test]

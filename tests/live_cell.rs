@@ -1,0 +1,390 @@
+//! The live cell without a window: practice on the simulated cell, from the first connection to a compared result.
+#![expect(clippy::expect_used, reason = "a test that finds nothing to check must fail")]
+
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::time::{Duration, Instant};
+
+use handeye::app::cell::{Activity, CellCommand, CellSettings, StationRoutine};
+use handeye::app::compare::distance_from_truth;
+use handeye::app::{Command, NoticeKind, RecoverySettings, Workbench};
+use handeye::calibrate::{Method, Solution};
+use handeye::device::sim::{Fault, FaultSpec, SimOptions};
+use handeye::device::{LinkState, MotionRefusal, RobotKind, RoutineEnd, SearchPhase, SensorKind, WorkspaceBox};
+use handeye::session::{Edit, Row, Session, Target};
+
+/// Long past anything that is waited for here, on a slow machine as well.
+const PATIENCE: Duration = Duration::from_secs(120);
+/// Fast enough for whole runs.
+const FAST: f64 = 50.0;
+/// Slow enough for something to happen during a move.
+const SLOW: f64 = 2.0;
+/// How far the result may be from the truth, in its stated σ. If all the uncertainty lies along one direction, a fair result
+/// is further off once in 16 000 runs.
+const FAIR_STDS: f64 = 4.0;
+
+struct Bench {
+    workbench: Workbench,
+    woken: Receiver<()>,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let (sender, woken) = sync_channel(64);
+        let wake = move || {
+            sender.try_send(()).ok();
+        };
+        Self { workbench: Workbench::new(Arc::new(wake)), woken }
+    }
+
+    /// A bench with a simulated cell, connected.
+    fn practising(seed: u64, time_scale: f64) -> Self {
+        Self::new().practise(seed, time_scale)
+    }
+
+    fn practise(self, seed: u64, time_scale: f64) -> Self {
+        self.practise_with(&SimOptions { seed, time_scale, ..SimOptions::default() })
+    }
+
+    fn practise_with(mut self, options: &SimOptions) -> Self {
+        self.workbench.practise_with(options);
+        self.wait("the links", |workbench| {
+            let cell = workbench.cell();
+            cell.robot.state == LinkState::Ready && cell.robot.latest.is_some() && cell.live.is_some()
+        });
+        self.change_settings(|settings| settings.settle.settle_ms = 5);
+        self
+    }
+
+    fn armed(mut self) -> Self {
+        self.cell(CellCommand::Arm(true));
+        assert!(self.workbench.cell().is_armed, "{:?}", self.workbench.notices());
+        self
+    }
+
+    fn change_settings(&mut self, change: impl FnOnce(&mut CellSettings)) {
+        let mut settings = self.workbench.cell().settings;
+        change(&mut settings);
+        self.cell(CellCommand::SetSettings(Box::new(settings)));
+    }
+
+    fn cell(&mut self, command: CellCommand) {
+        self.workbench.apply(Command::Cell(Box::new(command)));
+    }
+
+    /// Polls until it is so.
+    #[track_caller]
+    fn wait(&mut self, what: &str, is_so: impl Fn(&Workbench) -> bool) {
+        let deadline = Instant::now() + PATIENCE;
+        while !is_so(&self.workbench) {
+            assert!(Instant::now() < deadline, "waited in vain for {what}: {:?}", self.workbench.notices());
+            match self.woken.recv_timeout(Duration::from_millis(20)) {
+                Ok(()) | Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => panic!("the workbench is gone"),
+            }
+            self.workbench.poll();
+        }
+    }
+
+    fn wait_for_rest(&mut self) {
+        self.wait("rest", |workbench| !workbench.cell().is_busy() && !workbench.is_busy());
+    }
+
+    fn session(&self) -> &Session {
+        &self.workbench.document().expect("open").session
+    }
+
+    fn num_undo_steps(&self) -> usize {
+        self.workbench.document().expect("open").history.undo_labels().len()
+    }
+
+    fn solution(&self) -> &Solution {
+        let results = self.workbench.results().expect("solved");
+        results.method(Method::BallBundle).expect("run").outcome.as_ref().expect("solved")
+    }
+
+    fn last_end(&self) -> &RoutineEnd {
+        self.workbench.cell().last_end.as_ref().expect("a routine has ended")
+    }
+
+    fn last_notice(&self) -> &str {
+        &self.workbench.notices().last().expect("a notice").message
+    }
+
+    /// The robot stands: what it reports from now on differs by no more than its noise.
+    fn check_robot_stands(&mut self) {
+        let mut positions = Vec::new();
+        for _ in 0..3 {
+            let since = Instant::now();
+            let latest = |workbench: &Workbench| workbench.cell().robot.latest.clone();
+            self.wait("another report", |workbench| latest(workbench).is_some_and(|latest| latest.received_at > since));
+            positions.push(latest(&self.workbench).expect("reports").base_from_flange.translation_mm());
+        }
+        let moved_mm = (positions[2] - positions[0]).norm();
+        // The stated noise is about 0.02 mm; a robot under way makes 50 mm/s and more.
+        assert!(moved_mm < 0.5, "{moved_mm} mm");
+    }
+}
+
+fn recoverable_in(folder: &Path) -> Bench {
+    let mut bench = Bench::new();
+    bench.workbench.keep_copies(RecoverySettings { folder: folder.to_owned(), interval: Duration::ZERO });
+    bench
+}
+
+#[test]
+fn a_run_over_eight_stations_gives_a_result_within_its_stated_sigma() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut bench = recoverable_in(folder.path()).practise(1, FAST).armed();
+    bench.cell(CellCommand::StartRun { num_stations: 8 });
+    bench.wait_for_rest();
+    let run = bench.workbench.cell().run.expect("a run");
+    assert_eq!(run.num_done, 8, "{:?}", bench.workbench.notices());
+    let done = bench.workbench.notices().iter().filter(|notice| notice.kind == NoticeKind::Done).count();
+    assert_eq!(done, 1, "{:?}", bench.workbench.notices());
+
+    let truth = bench.session().truth.clone().expect("a simulated cell knows it");
+    let solution = bench.solution();
+    let stated_mm = solution.uncertainty.as_ref().expect("known").workspace_point_std_mm;
+    let off_mm = distance_from_truth(solution, &truth).workspace_point_mm;
+    println!("off by {off_mm:.4} mm, stated σ {stated_mm:.4} mm, {} captures", bench.session().num_captures());
+    assert!(off_mm < FAIR_STDS * stated_mm, "off by {off_mm} mm, stated σ {stated_mm} mm");
+
+    // One station, one step of undo; and a copy of the newest state is kept for a run that ends badly.
+    let num_stations = bench.session().stations.len();
+    assert_eq!(bench.num_undo_steps(), num_stations);
+    for num_left in (0..num_stations).rev() {
+        let label = bench.workbench.document().expect("open").history.undo_label().map(str::to_owned);
+        assert_eq!(label, Some(format!("capture station {}", num_left + 1)));
+        bench.workbench.apply(Command::Undo);
+        assert_eq!(bench.session().stations.len(), num_left);
+    }
+    bench.workbench.apply(Command::StepHistory(isize::MAX));
+    assert_eq!(bench.session().stations.len(), num_stations);
+    bench.wait_for_rest();
+    let num_captures = bench.session().num_captures();
+    drop(bench);
+    let mut after = recoverable_in(folder.path());
+    after.wait("what was left behind", |workbench| !workbench.recoverable().is_empty());
+    after.workbench.apply(Command::Recover(0));
+    after.wait("the recovered session", |workbench| workbench.document().is_some());
+    assert_eq!(after.session().num_captures(), num_captures);
+}
+
+#[test]
+fn every_robot_and_profiler_that_can_be_simulated_is_driven_to_a_result() {
+    for (robot, sensor) in
+        [(RobotKind::UniversalRobots, SensorKind::KeyenceLjv), (RobotKind::Bridge, SensorKind::Bridge)]
+    {
+        let options = SimOptions { seed: 8, time_scale: FAST, robot, sensor, ..SimOptions::default() };
+        let mut bench = Bench::new().practise_with(&options).armed();
+        bench.cell(CellCommand::StartRun { num_stations: 5 });
+        bench.wait_for_rest();
+        let run = bench.workbench.cell().run.expect("a run");
+        assert_eq!(run.num_done, 5, "{robot:?}: {:?}", bench.workbench.notices());
+        let truth = bench.session().truth.clone().expect("a simulated cell knows it");
+        let stated_mm = bench.solution().uncertainty.as_ref().expect("known").workspace_point_std_mm;
+        let off_mm = distance_from_truth(bench.solution(), &truth).workspace_point_mm;
+        assert!(off_mm < FAIR_STDS * stated_mm, "{robot:?}: off by {off_mm} mm, stated σ {stated_mm} mm");
+    }
+}
+
+#[test]
+fn a_controller_that_is_not_in_remote_mode_is_not_armed() {
+    let options = SimOptions {
+        robot: RobotKind::UniversalRobots,
+        time_scale: FAST,
+        faults: vec![FaultSpec::now(Fault::NotRemote)],
+        ..SimOptions::default()
+    };
+    let mut bench = Bench::new().practise_with(&options);
+    bench.cell(CellCommand::Arm(true));
+    assert!(!bench.workbench.cell().is_armed);
+    assert!(bench.last_notice().contains("remote"), "{}", bench.last_notice());
+}
+
+#[test]
+fn a_stop_a_disarming_a_disconnection_and_a_closed_document_each_stop_the_robot() {
+    let ways: [(&str, fn(&mut Bench)); 4] = [
+        ("stop", |bench| bench.cell(CellCommand::Stop)),
+        ("disarm", |bench| bench.cell(CellCommand::Arm(false))),
+        ("close", |bench| bench.workbench.apply(Command::CloseDocument)),
+        ("another session", |bench| bench.workbench.apply(Command::NewSession(Target::ball(10.0)))),
+    ];
+    for (what, way) in ways {
+        let mut bench = Bench::practising(2, SLOW).armed();
+        // A slow search: its moves take their time.
+        bench.change_settings(|settings| settings.limits.search_speed_mm_s = 1.0);
+        bench.cell(CellCommand::FindLargestArc);
+        bench.wait("a capture and then a move", |workbench| {
+            workbench.cell().search.is_some() && workbench.cell().activity == Activity::Moving
+        });
+        let num_captures = bench.session().num_captures();
+        way(&mut bench);
+        bench.wait_for_rest();
+        assert!(
+            matches!(bench.last_end(), RoutineEnd::Stopped { robot_stopped: Some(true) }),
+            "{what}: {:?}",
+            bench.last_end()
+        );
+        bench.check_robot_stands();
+        match what {
+            "close" => assert!(bench.workbench.document().is_none()),
+            "another session" => assert_eq!(bench.session().num_captures(), 0),
+            _ => assert!(bench.session().num_captures() >= num_captures && num_captures > 0),
+        }
+        if what == "disarm" {
+            assert!(!bench.workbench.cell().is_armed);
+            bench.cell(CellCommand::FindLargestArc);
+            bench.wait_for_rest();
+            assert_eq!(bench.last_end(), &RoutineEnd::NotAllowed(MotionRefusal::NotArmed));
+        }
+        bench.cell(CellCommand::DisconnectRobot);
+        assert_eq!(bench.workbench.cell().robot.state, LinkState::Off);
+        assert!(!bench.workbench.cell().is_armed);
+    }
+}
+
+#[test]
+fn what_is_not_allowed_is_not_begun_and_says_why() {
+    let mut bench = Bench::new();
+    for (command, reason) in [
+        (CellCommand::CaptureStation, "no session is open"),
+        (CellCommand::Arm(true), "not armed"),
+        (CellCommand::AcceptProposal, "no proposed pose"),
+        (CellCommand::StartRun { num_stations: 3 }, "not armed"),
+        (CellCommand::StartReplay, "nothing to replay"),
+    ] {
+        bench.cell(command);
+        assert!(bench.last_notice().contains(reason), "{}", bench.last_notice());
+    }
+    bench.workbench.apply(Command::NewSession(Target::Point));
+    bench.cell(CellCommand::FindLargestArc);
+    assert!(bench.last_notice().contains("no ball"), "{}", bench.last_notice());
+    bench.workbench.apply(Command::NewSession(Target::ball(15.0)));
+    bench.cell(CellCommand::FindLargestArc);
+    assert!(bench.last_notice().contains("no robot is connected"), "{}", bench.last_notice());
+
+    // The box excludes a part of the search's travel: nothing is captured and nothing moves.
+    let mut bench = Bench::practising(3, FAST).armed();
+    let here = bench.workbench.cell().robot.latest.clone().expect("reports").base_from_flange.translation_mm();
+    let workspace = WorkspaceBox { min_mm: (here.add_scalar(-5.0)).into(), max_mm: (here.add_scalar(5.0)).into() };
+    bench.change_settings(|settings| settings.limits.workspace = Some(workspace));
+    bench.cell(CellCommand::FindLargestArc);
+    bench.wait_for_rest();
+    assert!(
+        matches!(bench.last_end(), RoutineEnd::NotAllowed(MotionRefusal::OutsideWorkspace { .. })),
+        "{:?}",
+        bench.last_end()
+    );
+    assert_eq!(bench.session().num_captures(), 0);
+}
+
+#[test]
+fn a_single_profile_is_a_station_without_arming() {
+    let mut bench = Bench::practising(4, FAST);
+    bench.change_settings(|settings| settings.settle.num_profiles = 8);
+    for num_stations in 1..=2 {
+        bench.cell(CellCommand::CaptureStation);
+        bench.wait_for_rest();
+        assert_eq!(bench.last_end(), &RoutineEnd::Done);
+        assert_eq!(bench.session().stations.len(), num_stations);
+        assert_eq!(bench.num_undo_steps(), num_stations);
+    }
+    let repeat_std_mm = bench.workbench.cell().repeat_std_mm.expect("of eight profiles");
+    let stated_mm = bench.session().sensor.profile_std_mm.expect("stated");
+    // 800 columns and 7 degrees of freedom each: known to about 1 %; the wire's steps and the ball's flanks add a little.
+    assert!((0.8..1.5).contains(&(repeat_std_mm / stated_mm)), "{repeat_std_mm} against {stated_mm}");
+}
+
+#[test]
+fn a_run_pauses_goes_on_and_asks_before_each_motion() {
+    let mut bench = Bench::practising(5, FAST).armed();
+    bench.change_settings(|settings| settings.asks_before_motion = true);
+    bench.cell(CellCommand::StartRun { num_stations: 3 });
+    bench.cell(CellCommand::PauseRun);
+    bench.wait("the first capture", |workbench| workbench.cell().search.is_some());
+    let num_captures = bench.session().num_captures();
+    std::thread::sleep(Duration::from_millis(100));
+    bench.workbench.poll();
+    assert!(bench.session().num_captures() <= num_captures + 1, "a paused search makes no further step");
+    assert!(bench.workbench.cell().run.expect("a run").is_paused);
+    bench.cell(CellCommand::ResumeRun);
+    let is_asking = |workbench: &Workbench| workbench.cell().run.is_some_and(|run| run.is_asking);
+    bench.wait("the first question", is_asking);
+    assert_eq!(bench.session().stations.len(), 1);
+    let first = bench.workbench.cell().proposal.clone().expect("proposed");
+    assert!(first.refusal.is_none() && first.turn_deg > 1.0 && !first.reason.is_empty(), "{first:?}");
+    bench.cell(CellCommand::SkipProposal);
+    bench.wait("another proposal", |workbench| {
+        workbench.cell().proposal.as_ref().is_some_and(|proposal| proposal.station != first.station)
+            && is_asking(workbench)
+    });
+    bench.cell(CellCommand::AcceptProposal);
+    bench.wait("the second question", |workbench| is_asking(workbench) && !workbench.cell().is_busy());
+    assert_eq!(bench.session().stations.len(), 2);
+    bench.cell(CellCommand::DropProposal);
+    assert!(bench.workbench.cell().run.expect("a run").is_paused);
+    assert!(bench.workbench.cell().proposal.is_none());
+    bench.cell(CellCommand::ResumeRun);
+    bench.wait("the question again", is_asking);
+    bench.cell(CellCommand::Stop);
+    bench.wait_for_rest();
+    assert!(bench.last_notice().contains("after 2 of 3"), "{}", bench.last_notice());
+}
+
+#[test]
+fn taking_a_station_back_while_it_is_measured_stops_the_robot_and_the_run() {
+    let mut bench = Bench::practising(6, SLOW).armed();
+    bench.cell(CellCommand::StartRun { num_stations: 3 });
+    bench.wait("some captures", |workbench| {
+        workbench.document().is_some_and(|document| document.session.num_captures() >= 3)
+    });
+    // Another edit in between does no harm: the captures go on under the station, whatever it is called.
+    let rename = handeye::session::edit::CellValue::Label("first".to_owned());
+    let place = handeye::session::Place { station_idx: 0, capture_idx: 0 };
+    bench.workbench.apply(Command::Edit { edit: Edit::SetCells(vec![(place, rename)]), gesture: None });
+    let num_captures = bench.session().num_captures();
+    bench.wait("a further capture", |workbench| {
+        workbench.document().is_some_and(|document| document.session.num_captures() > num_captures)
+    });
+    assert_eq!(bench.session().stations.len(), 1);
+    bench.workbench.apply(Command::Edit { edit: Edit::Remove(vec![Row::Station(0)]), gesture: None });
+    bench.wait_for_rest();
+    assert!(matches!(bench.last_end(), RoutineEnd::Stopped { .. }), "{:?}", bench.last_end());
+    assert_eq!(bench.session().stations.len(), 0, "nothing comes after it was taken back");
+    assert!(bench.workbench.notices().iter().any(|notice| notice.message.contains("taken back")));
+    bench.check_robot_stands();
+    // It can be brought back.
+    bench.workbench.apply(Command::Undo);
+    assert!(bench.session().num_captures() > num_captures);
+}
+
+#[test]
+fn a_recorded_session_plays_through_the_panel_and_changes_nothing() {
+    let mut bench = Bench::practising(7, FAST).armed();
+    bench.change_settings(|settings| settings.routine = StationRoutine::LargestArc);
+    bench.cell(CellCommand::FindLargestArc);
+    bench.wait_for_rest();
+    assert!(bench.last_end().is_success(), "{:?}", bench.last_end());
+    let found = bench.workbench.cell().search.clone().expect("searched");
+    bench.cell(CellCommand::EndPractice);
+    let before = bench.session().clone();
+    bench.cell(CellCommand::StartReplay);
+    bench.wait("the end of the replay", |workbench| workbench.cell().replay.is_some_and(|replay| replay.is_over));
+    let cell = bench.workbench.cell();
+    let report = cell.search.clone().expect("played");
+    assert_eq!(report.points.len(), before.stations[0].captures.len());
+    assert_eq!(report.phase, SearchPhase::Ended);
+    let peak_mm = |report: &handeye::device::SearchReport| report.curve.expect("a curve").peak_mm;
+    // The same captures; only the zero of the travel is the first reported pose, not the one before it.
+    assert!((peak_mm(&report) - peak_mm(&found)).abs() < 0.2, "{} {}", peak_mm(&report), peak_mm(&found));
+    let last = before.stations[0].captures.last().expect("captures");
+    assert_eq!(cell.robot.latest.as_ref().expect("played").base_from_flange, last.base_from_flange);
+    assert!(cell.live.as_ref().expect("played").arc.is_ok());
+    assert_eq!(bench.session(), &before);
+    bench.cell(CellCommand::EndReplay);
+    let cell = bench.workbench.cell();
+    assert!(cell.replay.is_none() && cell.live.is_none() && cell.robot.latest.is_none());
+}
