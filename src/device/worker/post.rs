@@ -40,10 +40,10 @@ struct Inside<Request> {
     num_stops_served: u64,
     /// Whether the device took the last stop; `None` where it could not be told.
     stop_taken: Option<bool>,
-    /// The same of the stop that was tried as the connection broke.
-    stop_taken_at_break: Option<bool>,
-    /// Whether the thread is at a request, such as a move.
-    is_serving: bool,
+    /// The same of the stop that the thread tried of itself.
+    stop_taken_unasked: Option<bool>,
+    /// Whether the thread is at something that may have to be stopped, or stops it.
+    is_at_it: bool,
     is_over: bool,
     is_left: bool,
 }
@@ -81,8 +81,8 @@ impl<Request> Post<Request> {
             num_stops_asked: 0,
             num_stops_served: 0,
             stop_taken: None,
-            stop_taken_at_break: None,
-            is_serving: false,
+            stop_taken_unasked: None,
+            is_at_it: false,
             is_over: false,
             is_left: false,
         };
@@ -98,21 +98,22 @@ impl<Request> Post<Request> {
 
     // What the thread does.
 
-    /// Waits until there is something to do, at most until `until`.
-    pub fn next(&self, until: Option<Instant>) -> Next<Request> {
+    /// Waits until there is something to do, at most until `until`. A stop that was asked for comes even before the end.
+    pub fn next(&self, until: Option<Instant>, may_be_moving: bool) -> Next<Request> {
         let mut inside = lock(&self.board.inside);
         loop {
+            if inside.num_stops_served < inside.num_stops_asked {
+                inside.is_at_it = true;
+                return Next::Stop(inside.num_stops_asked);
+            }
             if inside.is_over {
                 return Next::Over;
             }
-            inside.is_serving = false;
-            if inside.num_stops_served < inside.num_stops_asked {
-                return Next::Stop(inside.num_stops_asked);
-            }
             if let Some(request) = inside.requests.pop_front() {
-                inside.is_serving = true;
+                inside.is_at_it = true;
                 return Next::Request(request);
             }
+            inside.is_at_it = may_be_moving;
             let Some(until) = until else {
                 inside = self.board.changed.wait(inside).unwrap_or_else(PoisonError::into_inner);
                 continue;
@@ -137,19 +138,28 @@ impl<Request> Post<Request> {
         self.change(|inside| {
             inside.num_stops_served = count;
             inside.stop_taken = taken;
-            inside.stop_taken_at_break = None;
+            inside.stop_taken_unasked = None;
         });
     }
 
-    pub fn note_stopped_by_break(&self, taken: Option<bool>) {
-        self.change(|inside| inside.stop_taken_at_break = taken);
+    /// The thread has stopped the device of itself; `None`: there was no need.
+    pub fn note_stopped_unasked(&self, taken: Option<bool>) {
+        lock(&self.board.inside).stop_taken_unasked = taken;
+    }
+
+    /// How the look at the device went.
+    pub fn note_look(&self, refusal: Option<&DeviceError>) {
+        let is_known = lock(&self.link).refusal() == refusal;
+        if !is_known {
+            self.change_link(|link| link.on_looked(refusal.cloned()));
+        }
     }
 
     /// There is no connection to stop by; what is known is how it went as it broke.
     pub fn note_stopped_without_connection(&self, count: u64) {
         self.change(|inside| {
             inside.num_stops_served = count;
-            inside.stop_taken = inside.stop_taken_at_break.filter(|taken| *taken);
+            inside.stop_taken = inside.stop_taken_unasked.filter(|taken| *taken);
         });
     }
 
@@ -159,6 +169,7 @@ impl<Request> Post<Request> {
         self.change(|inside| {
             inside.is_left = true;
             inside.num_stops_served = inside.num_stops_asked;
+            inside.stop_taken = inside.stop_taken_unasked.or(inside.stop_taken);
             std::mem::swap(&mut waiting, &mut inside.requests);
         });
         waiting.into_iter().for_each(refuse);
@@ -231,15 +242,15 @@ impl<Request> Post<Request> {
     }
 
     fn need_connection(&self, what: &str, binding: Option<Binding>) -> Result<(), DeviceError> {
-        let (state, num_connections) = {
+        let (is_made, state, num_connections) = {
             let link = lock(&self.link);
-            (link.state(Instant::now()), link.num_connections())
+            (link.is_made(), link.state(Instant::now()), link.num_connections())
         };
         match state {
-            LinkState::Ready if binding.is_none_or(|binding| binding.connection == num_connections) => Ok(()),
-            LinkState::Ready => Err(self.closed(what)),
+            _ if is_made && binding.is_none_or(|binding| binding.connection == num_connections) => Ok(()),
+            _ if is_made => Err(self.closed(what)),
             LinkState::Failed { error, .. } => Err(error),
-            LinkState::Off | LinkState::Connecting => Err(DeviceError::NotReady {
+            LinkState::Off | LinkState::Connecting | LinkState::Ready => Err(DeviceError::NotReady {
                 device: self.device,
                 found: "no connection yet".to_owned(),
                 needed: "a connection",
@@ -250,6 +261,12 @@ impl<Request> Post<Request> {
 
     fn closed(&self, what: &str) -> DeviceError {
         DeviceError::Closed { device: self.device, request: what.to_owned() }
+    }
+
+    /// Whether the connection with this number still holds.
+    pub fn has_connection(&self, connection: u64) -> bool {
+        let link = lock(&self.link);
+        link.is_made() && link.num_connections() == connection
     }
 
     pub fn num_connections(&self) -> u64 {
@@ -278,21 +295,24 @@ impl<Request> Post<Request> {
 
     /// Whether the device took the stop; `None` where it could not be told in time.
     pub fn wait_for_stop(&self, count: u64) -> Option<bool> {
-        // The thread may be within a request, which has a deadline of its own.
-        let patience = self.deadlines.request + self.deadlines.stop;
-        let is_waiting = |inside: &mut Inside<Request>| inside.num_stops_served < count;
-        let waited = self.board.changed.wait_timeout_while(lock(&self.board.inside), patience, is_waiting);
+        let is_waiting = |inside: &mut Inside<Request>| inside.num_stops_served < count && !inside.is_left;
+        let waited = self.board.changed.wait_timeout_while(lock(&self.board.inside), self.stop_patience(), is_waiting);
         let (inside, timeout) = waited.unwrap_or_else(PoisonError::into_inner);
         if timeout.timed_out() { None } else { inside.stop_taken }
     }
 
-    /// Ends the thread; waits a little if it is at a request: a robot on the move is to be told to stop.
-    pub fn end(&self, patience: Duration) {
+    /// Within a move the thread may be at two questions, each with a deadline of its own, before it comes to the stop.
+    fn stop_patience(&self) -> Duration {
+        self.deadlines.request * 2 + self.deadlines.stop
+    }
+
+    /// Ends the thread; waits if something may be on the move: it is to be told to stop before the program ends.
+    pub fn end(&self) {
         let mut inside = lock(&self.board.inside);
         inside.is_over = true;
         self.board.changed.notify_all();
-        let is_at_it = |inside: &mut Inside<Request>| inside.is_serving && !inside.is_left;
-        let waited = self.board.changed.wait_timeout_while(inside, patience, is_at_it);
+        let is_at_it = |inside: &mut Inside<Request>| inside.is_at_it && !inside.is_left;
+        let waited = self.board.changed.wait_timeout_while(inside, self.stop_patience(), is_at_it);
         drop(waited);
     }
 
@@ -324,9 +344,9 @@ mod tests {
             std::thread::sleep(Duration::from_millis(1));
         }
         let count = post.ask_stop();
-        assert!(matches!(post.next(None), Next::Stop(_)));
+        assert!(matches!(post.next(None, false), Next::Stop(_)));
         post.note_stopped(count, Some(true));
-        assert!(matches!(post.next(Some(Instant::now())), Next::Nothing));
+        assert!(matches!(post.next(Some(Instant::now()), false), Next::Nothing));
         assert_eq!(asker.join().ok(), Some(Err(DeviceError::Stopped { device: "Test" })));
     }
 }

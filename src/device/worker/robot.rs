@@ -140,13 +140,22 @@ impl Duty for RobotDuty {
     }
 
     fn stop(&mut self, driver: &mut Robot) -> Result<(), DeviceError> {
-        driver.stop(Instant::now() + self.deadlines.stop)?;
-        self.is_moving = false;
-        Ok(())
+        match driver.stop(Instant::now() + self.deadlines.stop) {
+            // What only reads was never sent anywhere.
+            Ok(()) | Err(DeviceError::CannotMove { .. }) => {
+                self.is_moving = false;
+                Ok(())
+            }
+            Err(error) => Err(error),
+        }
     }
 
     fn may_be_moving(&self) -> bool {
         self.is_moving
+    }
+
+    fn hide(&mut self) {
+        *lock(&self.latest) = None;
     }
 }
 
@@ -198,6 +207,12 @@ impl RobotClient {
     #[must_use]
     pub fn of_this_connection(&self) -> Self {
         Self { binding: Some(self.post.bind()), ..self.clone() }
+    }
+
+    /// Whether the connection with this number still holds, whatever the robot answers over it.
+    #[must_use]
+    pub fn has_connection(&self, connection: u64) -> bool {
+        self.post.has_connection(connection)
     }
 
     /// Tells the connection that is there now from those before.

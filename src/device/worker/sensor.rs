@@ -131,6 +131,10 @@ impl Duty for SensorDuty {
     fn may_be_moving(&self) -> bool {
         false
     }
+
+    fn hide(&mut self) {
+        lock(&self.shown).live = None;
+    }
 }
 
 /// Profiles a second, smoothed over about ten of them.
