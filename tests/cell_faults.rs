@@ -13,7 +13,9 @@ use std::time::{Duration, Instant};
 use handeye::app::cell::{Activity, CellCommand, CellView};
 use handeye::app::{Command, Workbench};
 use handeye::device::sim::{Fault, FaultSpec, FaultStart, SimCell, SimDevice, SimOptions};
-use handeye::device::{Deadlines, DeviceError, LinkState, RoutineEnd, SearchEnd, SearchPhase};
+use handeye::device::{
+    Deadlines, DeviceError, LinkState, MotionRefusal, RobotKind, RoutineEnd, SearchEnd, SearchPhase, SensorKind,
+};
 use handeye::scene::Random;
 use handeye::session::{Session, Target};
 
@@ -30,8 +32,8 @@ struct Cell {
 }
 
 impl Cell {
-    fn start(seed: u64, direction: f64, request: Duration) -> Self {
-        let options = SimOptions { seed, time_scale: TIME_SCALE, ..SimOptions::default() };
+    fn start(options: &SimOptions, direction: f64, request: Duration) -> Self {
+        let options = SimOptions { time_scale: TIME_SCALE, ..options.clone() };
         let sim = SimCell::start(&options).expect("ports are free");
         let (sender, woken) = sync_channel(64);
         let wake = move || {
@@ -168,7 +170,9 @@ fn is_expected(fault: Fault, end: &RoutineEnd) -> bool {
         Fault::BallMoved => matches!(end, RoutineEnd::Searched(_)),
         Fault::StaleProfile => matches!(end, RoutineEnd::StaleProfiles { .. }),
         Fault::NotRemote => {
-            matches!(end, RoutineEnd::NotAllowed(_) | RoutineEnd::Failed { .. } | RoutineEnd::Searched(_))
+            matches!(end, RoutineEnd::NotAllowed(MotionRefusal::NotReady { .. }))
+                // Between the look and the script: the script is ignored, and the move never ends.
+                || is_error(|error| matches!(error, DeviceError::NotReady { .. } | DeviceError::Timeout { .. }))
         }
     }
 }
@@ -176,11 +180,13 @@ fn is_expected(fault: Fault, end: &RoutineEnd) -> bool {
 fn check_fault(fault: Fault, device: SimDevice, moment: Moment) -> String {
     let what = format!("{fault:?} of {device:?} at {moment:?}");
     // One of the two directions leads away from the peak, and so through the reversal.
-    let seed = 11;
+    // Only some controllers have a remote mode.
+    let robot = if fault == Fault::NotRemote { RobotKind::UniversalRobots } else { RobotKind::FanucMappdk };
+    let options = SimOptions { seed: 11, robot, ..SimOptions::default() };
     for direction in [1.0, -1.0] {
         // What is slow is to be too slow: otherwise each of these searches takes a minute.
         let request = if fault == Fault::Slow { REQUEST / 2 } else { REQUEST };
-        let mut cell = Cell::start(seed, direction, request);
+        let mut cell = Cell::start(&options, direction, request);
         cell.arm();
         cell.tell(CellCommand::FindLargestArc);
         let is_there = |cell: &Cell| match moment {
@@ -204,7 +210,6 @@ fn check_fault(fault: Fault, device: SimDevice, moment: Moment) -> String {
         }
         cell.check_nothing_is_lost(&what);
         cell.check_robot_stands(&what);
-        println!("{what}: {}", name_of(Some(&end)));
         return name_of(Some(&end));
     }
     panic!("{what}: the moment never came");
@@ -243,8 +248,8 @@ fn each_fault_at_each_phase_ends_in_its_time_and_in_its_name() {
     ];
     let of_wire = [Fault::SplitFrames, Fault::Slow, Fault::Silent, Fault::Garbage, Fault::Disconnect];
     let of_both = of_wire.into_iter().flat_map(|fault| [(fault, SimDevice::Robot), (fault, SimDevice::Sensor)]);
-    let of_one =
-        [Fault::RobotRefuses, Fault::BallMoved, Fault::StaleProfile].map(|fault| (fault, fault.usual_device()));
+    let of_one = [Fault::RobotRefuses, Fault::BallMoved, Fault::StaleProfile, Fault::NotRemote]
+        .map(|fault| (fault, fault.usual_device()));
     let cases: Vec<_> = of_both
         .chain(of_one)
         .flat_map(|(fault, device)| moments.into_iter().map(move |moment| (fault, device, moment)))
@@ -282,7 +287,9 @@ fn random_faults(seed: u64) -> Vec<FaultSpec> {
 fn run_schedule(seed: u64) -> String {
     let faults = random_faults(seed);
     let what = format!("schedule {seed}: {faults:?}");
-    let mut cell = Cell::start(seed, 1.0, REQUEST);
+    let robot = [RobotKind::FanucMappdk, RobotKind::UniversalRobots, RobotKind::Bridge][(seed % 3) as usize];
+    let sensor = if seed % 2 == 0 { SensorKind::KeyenceLjv } else { SensorKind::Bridge };
+    let mut cell = Cell::start(&SimOptions { seed, robot, sensor, ..SimOptions::default() }, 1.0, REQUEST);
     cell.arm();
     for fault in faults {
         cell.sim.inject(fault);

@@ -163,6 +163,8 @@ fn single_edit() -> impl Strategy<Value = Edit> {
         prop::collection::vec((place(), value()), 0..3).prop_map(Edit::SetCells),
         (0..6_usize, prop::collection::vec(station(), 0..3))
             .prop_map(|(at, stations)| Edit::InsertStations { at, stations }),
+        (0..6_usize, capture())
+            .prop_map(|(station_idx, capture)| Edit::AppendCapture { station_idx, capture: Box::new(capture) }),
         prop::collection::vec(row(), 0..4).prop_map(Edit::Duplicate),
         prop::collection::vec(row(), 0..4).prop_map(Edit::Remove),
         order.prop_map(Edit::Reorder),
@@ -366,6 +368,14 @@ fn refusals_say_what_was_found() {
     ] {
         check(&[1, 2], &edit, Err(expected));
     }
+}
+
+#[test]
+fn a_capture_goes_behind_those_of_its_station() {
+    let capture = session(&[1]).stations[0].captures[0].clone();
+    let append = |station_idx| Edit::AppendCapture { station_idx, capture: Box::new(capture.clone()) };
+    check(&[1, 2], &append(1), Ok("1:00|0 2:10,11,00|1"));
+    check(&[1], &append(1), Err("found no capture 1 of station 2; it may have been removed"));
 }
 
 #[test]

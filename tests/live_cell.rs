@@ -10,8 +10,8 @@ use handeye::app::cell::{Activity, CellCommand, CellSettings, StationRoutine};
 use handeye::app::compare::distance_from_truth;
 use handeye::app::{Command, NoticeKind, RecoverySettings, Workbench};
 use handeye::calibrate::{Method, Solution};
-use handeye::device::sim::SimOptions;
-use handeye::device::{LinkState, MotionRefusal, RoutineEnd, SearchPhase, WorkspaceBox};
+use handeye::device::sim::{Fault, FaultSpec, SimOptions};
+use handeye::device::{LinkState, MotionRefusal, RobotKind, RoutineEnd, SearchPhase, SensorKind, WorkspaceBox};
 use handeye::session::{Edit, Row, Session, Target};
 
 /// Long past anything that is waited for here, on a slow machine as well.
@@ -43,8 +43,12 @@ impl Bench {
         Self::new().practise(seed, time_scale)
     }
 
-    fn practise(mut self, seed: u64, time_scale: f64) -> Self {
-        self.workbench.practise_with(&SimOptions { seed, time_scale, ..SimOptions::default() });
+    fn practise(self, seed: u64, time_scale: f64) -> Self {
+        self.practise_with(&SimOptions { seed, time_scale, ..SimOptions::default() })
+    }
+
+    fn practise_with(mut self, options: &SimOptions) -> Self {
+        self.workbench.practise_with(options);
         self.wait("the links", |workbench| {
             let cell = workbench.cell();
             cell.robot.state == LinkState::Ready && cell.robot.latest.is_some() && cell.live.is_some()
@@ -134,7 +138,7 @@ fn a_run_over_eight_stations_gives_a_result_within_its_stated_sigma() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut bench = recoverable_in(folder.path()).practise(1, FAST).armed();
     bench.cell(CellCommand::StartRun { num_stations: 8 });
-    bench.wait("the run", |workbench| !workbench.cell().is_busy() && !workbench.is_busy());
+    bench.wait_for_rest();
     let run = bench.workbench.cell().run.expect("a run");
     assert_eq!(run.num_done, 8, "{:?}", bench.workbench.notices());
     let done = bench.workbench.notices().iter().filter(|notice| notice.kind == NoticeKind::Done).count();
@@ -166,6 +170,38 @@ fn a_run_over_eight_stations_gives_a_result_within_its_stated_sigma() {
     after.workbench.apply(Command::Recover(0));
     after.wait("the recovered session", |workbench| workbench.document().is_some());
     assert_eq!(after.session().num_captures(), num_captures);
+}
+
+#[test]
+fn every_robot_and_profiler_that_can_be_simulated_is_driven_to_a_result() {
+    for (robot, sensor) in
+        [(RobotKind::UniversalRobots, SensorKind::KeyenceLjv), (RobotKind::Bridge, SensorKind::Bridge)]
+    {
+        let options = SimOptions { seed: 8, time_scale: FAST, robot, sensor, ..SimOptions::default() };
+        let mut bench = Bench::new().practise_with(&options).armed();
+        bench.cell(CellCommand::StartRun { num_stations: 5 });
+        bench.wait_for_rest();
+        let run = bench.workbench.cell().run.expect("a run");
+        assert_eq!(run.num_done, 5, "{robot:?}: {:?}", bench.workbench.notices());
+        let truth = bench.session().truth.clone().expect("a simulated cell knows it");
+        let stated_mm = bench.solution().uncertainty.as_ref().expect("known").workspace_point_std_mm;
+        let off_mm = distance_from_truth(bench.solution(), &truth).workspace_point_mm;
+        assert!(off_mm < FAIR_STDS * stated_mm, "{robot:?}: off by {off_mm} mm, stated σ {stated_mm} mm");
+    }
+}
+
+#[test]
+fn a_controller_that_is_not_in_remote_mode_is_not_armed() {
+    let options = SimOptions {
+        robot: RobotKind::UniversalRobots,
+        time_scale: FAST,
+        faults: vec![FaultSpec::now(Fault::NotRemote)],
+        ..SimOptions::default()
+    };
+    let mut bench = Bench::new().practise_with(&options);
+    bench.cell(CellCommand::Arm(true));
+    assert!(!bench.workbench.cell().is_armed);
+    assert!(bench.last_notice().contains("remote"), "{}", bench.last_notice());
 }
 
 #[test]

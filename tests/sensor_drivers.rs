@@ -391,6 +391,28 @@ fn damaged_messages_never_panic_and_take_no_memory() {
     assert!(MEMORY.peak_usage() < before + MOST_BYTES);
 }
 
+#[test]
+fn a_file_saved_into_a_watched_folder_becomes_the_newest_profile() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    std::fs::write(folder.path().join("old.csv"), "x,z\n0,1\n").expect("written");
+    let nowhere = Endpoint { host: String::new(), port: 0 };
+    let setup = SensorSetup { folder: folder.path().to_owned(), ..setup(SensorKind::Folder, nowhere) };
+    let mut driver = connect(&setup, soon()).expect("connected");
+    assert_eq!(driver.newest(soon()), Ok(None));
+    std::fs::write(folder.path().join("new.csv"), "x [mm];z [mm]\n-0,5;2,25\n0,5;\n").expect("written");
+    let deadline = soon();
+    let reading = loop {
+        if let Some(reading) = driver.newest(deadline).expect("no error") {
+            break reading;
+        }
+        assert!(Instant::now() < deadline, "the file was not picked up");
+        thread::sleep(Duration::from_millis(5));
+    };
+    assert_eq!((reading.trigger_count, reading.profile.x_mm()), (1, [-0.5, 0.5].as_slice()));
+    driver.forget(soon()).expect("forgotten");
+    assert_eq!(driver.newest(soon()), Ok(None));
+}
+
 fn line_len(bytes: &[u8]) -> Option<usize> {
     bridge::line_len(bytes).expect("a line of ours")
 }

@@ -3,6 +3,7 @@
 
 use std::io::{Read as _, Write as _};
 use std::net::{TcpListener, TcpStream};
+use std::process::Command;
 use std::sync::Arc;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -67,17 +68,19 @@ fn mappdk_greets_answers_moves_and_refuses() {
     assert!(before.starts_with("0:x= "), "{before}");
     let mut target = values(&before);
     target[1] += 0.5;
-    let fields: String = target.iter().map(|value| format!(":{value:+014.6}")).collect();
-    assert_eq!(ask_line(&mut client, &format!("movep:0020:0100:000:1:6{fields}\n"), 9), "0:success");
+    let move_to = |values: &[f64]| {
+        let fields: Vec<String> = values.iter().map(|value| format!("{value:+014.6}")).collect();
+        format!("movep:0020:0100:000:1:6:{}\n", fields.join(":"))
+    };
+    assert_eq!(ask_line(&mut client, &move_to(&target), 9), "0:success");
     let after = values(&position(&mut client));
     for (found, expected) in after.iter().zip(&target) {
         // Half of the last decimal, and the rounding of the target.
         assert!((found - expected).abs() < 0.0011, "{after:?} instead of {target:?}");
     }
     target[0] += 2000.0;
-    let fields: String = target.iter().map(|value| format!(":{value:+014.6}")).collect();
     let refusal = "1:position-is-not-reachable";
-    assert_eq!(ask_line(&mut client, &format!("movep:0020:0100:000:1:6{fields}\n"), refusal.len()), refusal);
+    assert_eq!(ask_line(&mut client, &move_to(&target), refusal.len()), refusal);
 }
 
 #[test]
@@ -87,17 +90,48 @@ fn ljv_answers_golden_bytes_and_whole_profiles() {
     let program = hex("14000000 0100f000 00000000 08000000 39000000 07000000");
     let reply = ask_until(&mut client, &program, |answer| answer.len() >= 28);
     assert_eq!(reply, hex("18000000 010000f0 00000000 0c000000 39000000 00000000 07000000"));
-    // A new connection for one command, with a reply of one profile of 800 points.
+    // Another connection finds the same program, and gets a profile of 800 points.
     sleep(Duration::from_millis(5));
     let mut other = connect(cell.sensor_setup.endpoint.port);
     let golden = hex("20000000 0100f000 00000000 14000000 42000000 00000000 00000000 01000000 01010000");
     let reply = ask_until(&mut other, &golden, |answer| answer.len() >= 2092);
     assert_eq!(reply.len(), 2092);
     assert_eq!(&reply[..4], &2088_u32.to_le_bytes());
-    assert_eq!(reply[40], 1);
+    assert_eq!((reply[24], reply[40]), (7, 1));
     let unknown = hex("10000000 0100f000 00000000 04000000 99000000");
     let reply = ask_until(&mut other, &unknown, |answer| answer.len() >= 28);
     assert_eq!((reply.len(), reply[17]), (28, 0x31));
+}
+
+#[test]
+fn the_high_speed_port_pushes_one_profile_after_the_other() {
+    const PROFILE: usize = 2028;
+    let cell = SimCell::start(&quick()).expect("free ports");
+    let port_of = |what: &str| cell.ports.iter().find(|(_, found)| found.contains(what)).expect("served").0;
+    let mut stream = connect(port_of("high-speed"));
+    let mut client = connect(cell.sensor_setup.endpoint.port);
+    let reply = ask_until(&mut client, &hex("14000000 0100f000 00000000 08000000 47000000 02000000"), |bytes| {
+        bytes.len() >= 56
+    });
+    assert_eq!((reply.len(), reply[17]), (56, 0));
+    // 800 points, 0.5 µm, from −40 mm on, 0.1 mm apart.
+    assert_eq!(reply[44..], hex("2003 3200 00f7c2ff 10270000"));
+    let mut start = hex("18000000 0100f000 00000000 0c000000 a0000000 47000000");
+    start.extend(&reply[32..36]);
+    assert_eq!(ask_until(&mut client, &start, |bytes| bytes.len() >= 28)[17], 0);
+    let profiles = ask_until(&mut stream, b"", |bytes| bytes.len() >= 3 * PROFILE);
+    let word = |at: usize| u32::from_le_bytes(*profiles[at..].first_chunk().expect("4 bytes"));
+    for start in [0, PROFILE, 2 * PROFILE] {
+        let sum = (start..start + PROFILE - 4).step_by(4).map(word).fold(0, u32::wrapping_add);
+        assert_eq!(word(start + PROFILE - 4), sum);
+        assert_eq!(word(start + 4), word(4) + u32::try_from(start / PROFILE).expect("few"));
+    }
+    let stop = hex("10000000 0100f000 00000000 04000000 48000000");
+    assert_eq!(ask_until(&mut client, &stop, |bytes| bytes.len() >= 28)[17], 0);
+    // Whole profiles until then, and the note of the stop behind them.
+    let note = hex("ffffffff 01000000");
+    let rest = ask_until(&mut stream, b"", |bytes| bytes.ends_with(&note));
+    assert_eq!((profiles.len() + rest.len() - note.len()) % PROFILE, 0);
 }
 
 #[test]
@@ -133,6 +167,33 @@ fn ports_keep_their_distances_and_a_taken_one_is_named() {
     assert!(refusal.contains(&taken.to_string()) && refusal.contains("--port-offset"), "{refusal}");
     let folder = SimOptions { sensor: SensorKind::Folder, ..quick() };
     assert!(SimCell::start(&folder).expect_err("no protocol").to_string().contains("watched folder"));
+}
+
+#[test]
+fn the_command_serves_for_a_while_and_names_a_port_that_is_taken() {
+    let run = |offset: u16| {
+        let offset = offset.to_string();
+        let arguments = ["cell", "--port-offset", &offset, "--seconds", "0", "--truth"];
+        Command::new(env!("CARGO_BIN_EXE_handeye")).args(arguments).output().expect("it runs")
+    };
+    // Found free by a cell, and free again once that has ended, unless somebody else is quick.
+    let found = (0..5).find_map(|_| {
+        let cell = SimCell::start(&quick()).expect("free ports");
+        let offset = cell.robot_setup.endpoint.port - 18735;
+        drop(cell);
+        let output = run(offset);
+        output.status.success().then_some((offset, output))
+    });
+    let (offset, output) = found.expect("free ports");
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(text.starts_with(&format!("127.0.0.1:{} FANUC MAPPDK server\n", 18735 + offset)), "{text}");
+    assert!(text.contains("truth: ball_in_base") && text.ends_with("ready\n"), "{text}");
+    let _taken = TcpListener::bind(("127.0.0.1", 18736 + offset)).expect("free");
+    let output = run(offset);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(message.contains(&(18736 + offset).to_string()) && message.contains("--port-offset"), "{message}");
+    assert_eq!(message.lines().count(), 1, "{message}");
 }
 
 #[test]

@@ -66,8 +66,8 @@ pub enum MoveState {
 
 /// A robot's controller, connected. Dropping it closes the connection.
 ///
-/// Every call returns by its deadline, with an error if need be. After an error other than `Refused`, `NotReady` and
-/// `CannotMove` the connection is not used any more.
+/// Every call returns by its deadline, with an error if need be. After an error that does not leave the connection usable
+/// (see [`DeviceError::leaves_connection_usable`]) nothing is asked any more but to stop.
 pub trait RobotDriver: Send {
     /// What messages call it.
     fn name(&self) -> &'static str;

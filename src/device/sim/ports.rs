@@ -65,17 +65,20 @@ fn of_robot(robot: RobotKind) -> Vec<PortPlan> {
 }
 
 fn of_sensor(sensor: SensorKind) -> Vec<PortPlan> {
-    let port = |what, service: Service| PortPlan {
-        default_port: sensor.default_port(),
+    let port = |default_port, what, service: Service| PortPlan {
+        default_port,
         what,
         device: SimDevice::Sensor,
         clients: Clients::Many,
         service,
-        is_main: true,
+        is_main: default_port == sensor.default_port(),
     };
     match sensor {
-        SensorKind::KeyenceLjv => vec![port("Keyence LJ-V7000 command port", server::ljv::serve)],
-        SensorKind::Bridge => vec![port("text bridge of a profiler", server::bridge::serve_profiler)],
+        SensorKind::KeyenceLjv => vec![
+            port(24691, "Keyence LJ-V7000 command port", server::ljv::serve),
+            port(24692, "Keyence LJ-V7000 high-speed port", server::ljv::serve_stream),
+        ],
+        SensorKind::Bridge => vec![port(27016, "text bridge of a profiler", server::bridge::serve_profiler)],
         SensorKind::Folder => Vec::new(),
     }
 }

@@ -156,10 +156,20 @@ struct State {
     registers: [i32; NUM_REGISTERS],
     pose_noise: Random,
     faults: FaultPlan,
+    profiler: Profiler,
+}
+
+/// What the profiler's controller was told.
+#[derive(Clone, Copy, Debug, Default)]
+struct Profiler {
     /// Profiles up to this count were forgotten.
     forgotten: u32,
     /// The last profile before the head went stale.
     stale_at: Option<u32>,
+    /// The program that is active.
+    program: u8,
+    /// The first profile of the high-speed stream that runs.
+    stream_from: Option<u32>,
 }
 
 /// The arm, the ball, the profiler.
@@ -208,8 +218,7 @@ impl World {
                 registers: [0; NUM_REGISTERS],
                 pose_noise: Random::new(options.seed, stream::POSE),
                 faults: FaultPlan::new(&options.faults),
-                forgotten: 0,
-                stale_at: None,
+                profiler: Profiler::default(),
             }),
         }
     }
@@ -375,13 +384,35 @@ impl World {
     pub fn trigger_counts(&self) -> (u32, u32) {
         let (mut state, time_s) = self.now();
         let newest = Self::newest_count(&mut state, time_s);
-        (newest, state.forgotten.saturating_add(1))
+        (newest, state.profiler.forgotten.saturating_add(1))
     }
 
     /// Forgets every profile up to a count.
     pub fn forget_profiles(&self, up_to: u32) {
         let (mut state, _) = self.now();
-        state.forgotten = state.forgotten.max(up_to);
+        state.profiler.forgotten = state.profiler.forgotten.max(up_to);
+    }
+
+    /// The program of the profiler that is active.
+    #[must_use]
+    pub fn program(&self) -> u8 {
+        self.now().0.profiler.program
+    }
+
+    /// Changes that.
+    pub fn change_program(&self, program: u8) {
+        self.now().0.profiler.program = program;
+    }
+
+    /// The first profile of the high-speed stream; `None` while none runs.
+    #[must_use]
+    pub fn stream_from(&self) -> Option<u32> {
+        self.now().0.profiler.stream_from
+    }
+
+    /// Starts that stream from a profile on, or ends it.
+    pub fn set_stream(&self, from: Option<u32>) {
+        self.now().0.profiler.stream_from = from;
     }
 
     /// The profile of a count; the same count gives the same profile.
@@ -417,9 +448,9 @@ impl World {
     fn newest_count(state: &mut State, time_s: f64) -> u32 {
         let count = (time_s * TRIGGERS_PER_S) as u32;
         if state.faults.has(Fault::StaleProfile) {
-            *state.stale_at.get_or_insert(count)
+            *state.profiler.stale_at.get_or_insert(count)
         } else {
-            state.stale_at = None;
+            state.profiler.stale_at = None;
             count
         }
     }

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use super::post::{Post, lock};
 use super::{Connect, Deadlines, Duty, Hold, start};
-use crate::device::driver::{LinearMove, MoveState, RobotDriver, RobotReport};
+use crate::device::driver::{LinearMove, MoveState, Readiness, RobotDriver, RobotReport};
 use crate::device::error::DeviceError;
 use crate::device::link::LinkState;
 use crate::watch::Wake;
@@ -82,7 +82,11 @@ impl RobotDuty {
             }
             if now >= next_look {
                 next_look = now + Self::LOOK_EVERY;
-                self.report(driver, post)?;
+                // A controller that somebody takes out of its remote mode does not always say that the move is over.
+                if let Readiness::NotReady { found, remedy } = self.report(driver, post)?.readiness {
+                    let (device, needed) = (driver.name(), "a controller that takes commands of motion");
+                    return Err(DeviceError::NotReady { device, found, needed, remedy });
+                }
             }
         }
     }

@@ -38,6 +38,8 @@ pub const NO_BALL_SEEN: &str =
 /// Why a run ended.
 pub const STOPPED: &str = "it was stopped";
 /// Why a run ended.
+pub const LINK_LOST: &str = "the connection to the robot was lost";
+/// Why a run ended.
 pub const DEVICE_FAILED: &str = "a device failed. See to it, arm again, and start a new run";
 /// A recorded capture is a point already.
 pub const NO_PROFILE: &str = "the capture holds no profile";

@@ -1,8 +1,10 @@
 //! The state machine of the search, drawn as in the paper's Fig. 3: the box where the search is lights up.
 
+use std::sync::Arc;
+
 use egui::{
-    Align, Align2, CornerRadius, FontId, Layout, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2,
-    vec2,
+    Align, Align2, Color32, CornerRadius, FontId, Galley, Layout, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui,
+    WidgetInfo, pos2, vec2,
 };
 
 use crate::device::{SearchEnd, SearchPhase};
@@ -58,8 +60,14 @@ fn paint(ui: &mut Ui, row: Rect, states: [BoxState; 6]) {
     let rects: [Rect; 6] = std::array::from_fn(|idx| {
         Rect::from_min_size(pos2(row.left() + (width + GAP) * idx as f32, row.top()), vec2(width, row.height()))
     });
-    for (idx, (rect, state)) in rects.into_iter().zip(states).enumerate() {
-        paint_box(ui, rect, PHASES[idx], state);
+    // Where not all have room for what they do, the titles say enough.
+    let font = FontId::proportional(theme::SMALL_SIZE);
+    let does = PHASES.map(|phase| {
+        ui.painter().layout_no_wrap(words::phase_does(phase).to_owned(), font.clone(), Color32::PLACEHOLDER)
+    });
+    let has_room = does.iter().all(|does| does.size().x < width - 8.0);
+    for ((rect, does), (phase, state)) in rects.into_iter().zip(does).zip(PHASES.into_iter().zip(states)) {
+        paint_box(ui, rect, phase, state, has_room.then_some(does));
     }
     let palette = theme::palette(ui);
     let stroke = Stroke::new(1.2, palette.text_dim);
@@ -75,7 +83,7 @@ fn paint(ui: &mut Ui, row: Rect, states: [BoxState; 6]) {
     arrow(pos2(climb.center().x, y), pos2(climb.center().x, climb.top()));
 }
 
-fn paint_box(ui: &mut Ui, rect: Rect, phase: SearchPhase, state: BoxState) {
+fn paint_box(ui: &mut Ui, rect: Rect, phase: SearchPhase, state: BoxState, does: Option<Arc<Galley>>) {
     let palette = theme::palette(ui);
     let title = if state == BoxState::GaveUp { words::NOT_FOUND } else { words::phase(phase) };
     let (fill, border, color) = match state {
@@ -100,14 +108,10 @@ fn paint_box(ui: &mut Ui, rect: Rect, phase: SearchPhase, state: BoxState) {
     let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
     painter.rect(rect, CornerRadius::same(theme::RADIUS), fill, Stroke::new(1.0, border), StrokeKind::Inside);
     let center = rect.center();
-    let small = FontId::proportional(theme::SMALL_SIZE);
-    let dim = if state == BoxState::Now { palette.on_accent } else { palette.text_dim };
-    let does = painter.layout_no_wrap(words::phase_does(phase).to_owned(), small, dim);
-    // What has no room is left out: the titles say enough.
-    let has_room = does.size().x < rect.width() - 8.0;
-    let up = if has_room { 8.0 } else { 0.0 };
+    let up = if does.is_some() { 8.0 } else { 0.0 };
     painter.text(center - vec2(0.0, up), Align2::CENTER_CENTER, format!("{mark}{title}"), theme::strong_font(), color);
-    if has_room {
+    if let Some(does) = does {
+        let dim = if state == BoxState::Now { palette.on_accent } else { palette.text_dim };
         painter.galley(center + vec2(-does.size().x / 2.0, 10.0 - does.size().y / 2.0), does, dim);
     }
 }

@@ -1,3 +1,5 @@
+//! What the panel decides and draws: the one next action, refusals, lamps, boxes, curve.
+
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -87,8 +89,8 @@ fn deed(cell: &CellView, session: Option<&Session>, memory: &CellMemory) -> Opti
     next(&View { cell, session, has_solution: false }, memory).button.map(|(_, deed)| deed)
 }
 
-fn command(command: CellCommand) -> Option<Deed> {
-    Some(Deed::Cell(command))
+fn command(command: impl Into<Option<CellCommand>>) -> Option<Deed> {
+    command.into().map(Deed::Cell)
 }
 
 #[test]

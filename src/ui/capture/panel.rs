@@ -8,7 +8,7 @@ use egui::{Rect, ScrollArea, Ui, UiBuilder};
 use crate::app::Command;
 use crate::app::cell::{CellCommand, CellSettings};
 use crate::device::SearchReport;
-use crate::geometry::Profile;
+use crate::geometry::{Profile, Vec3};
 use crate::session::Target;
 use crate::ui::actions::Action;
 use crate::ui::arcs::model::ProfileModel;
@@ -38,6 +38,8 @@ pub struct CaptureState {
     pub(super) radius_mm: f64,
     /// Whether the mounting is to be seen in the next frame.
     pub(super) reveals_mounting: bool,
+    /// Where the proposal of the last frame was, in the base.
+    pub(super) seen_proposal: Option<Vec3>,
 }
 
 impl Default for CaptureState {
@@ -50,6 +52,7 @@ impl Default for CaptureState {
             is_curve_fitted: true,
             radius_mm: 15.0,
             reveals_mounting: false,
+            seen_proposal: None,
         }
     }
 }

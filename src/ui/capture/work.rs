@@ -32,7 +32,15 @@ pub fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         row(ui, desk, &[(station, 0.26), (next, 0.4), (run, 0.34)]);
     } else {
         row(ui, desk, &[(station, 0.46), (run, 0.54)]);
+        let top = ui.cursor().top();
         next(ui, desk);
+        // A new proposal is to be looked at before it is gone to.
+        let proposal = desk.view.cell.proposal.as_ref();
+        let proposed = proposal.map(|proposal| proposal.station.base_from_flange.translation_mm());
+        if proposed.is_some() && proposed != desk.state.seen_proposal {
+            ui.scroll_to_rect(ui.min_rect().with_min_y(top), None);
+        }
+        desk.state.seen_proposal = proposed;
     }
 }
 

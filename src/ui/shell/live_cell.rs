@@ -8,6 +8,13 @@ use crate::ui::capture::model::is_running;
 
 use super::Shell;
 
+/// How the cell was in the last frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CellWatch {
+    /// Whether it was the simulated one.
+    was_practice: bool,
+}
+
 /// The command that stops.
 pub fn stop() -> Command {
     Command::Cell(Box::new(CellCommand::Stop))
@@ -50,7 +57,7 @@ impl Shell {
     pub(super) fn remember_cell(&mut self) {
         let cell = self.workbench.cell();
         let is_practice = cell.is_practice;
-        let has_ended = std::mem::replace(&mut self.was_practice, is_practice) && !is_practice;
+        let has_ended = std::mem::replace(&mut self.cell_watch.was_practice, is_practice) && !is_practice;
         if has_ended {
             let settings = Box::new(self.persisted.cell.settings);
             self.workbench.apply(Command::Cell(Box::new(CellCommand::SetSettings(settings))));

@@ -14,6 +14,7 @@ use crate::app::jobs::Wake;
 use crate::app::{Command, OnDisk, Workbench};
 use crate::text::shell as words;
 
+use self::live_cell::CellWatch;
 use super::actions::{self, Action};
 use super::arcs::ArcsState;
 use super::capture::CaptureState;
@@ -67,8 +68,7 @@ pub struct Shell {
     poses: PosesState,
     arcs: ArcsState,
     capture: CaptureState,
-    /// Whether the cell was the simulated one in the last frame.
-    was_practice: bool,
+    cell_watch: CellWatch,
     compare: CompareState,
     diagnosis: DiagnosisState,
     import: ImportState,
@@ -117,7 +117,7 @@ impl Shell {
             poses: PosesState::default(),
             arcs: ArcsState::default(),
             capture: CaptureState::default(),
-            was_practice: false,
+            cell_watch: CellWatch::default(),
             compare: CompareState::default(),
             diagnosis: DiagnosisState::default(),
             import: ImportState::default(),

@@ -6,7 +6,9 @@ use std::time::Instant;
 
 use crate::app::cell::{Activity, StationRoutine};
 use crate::calibrate::SideChoice;
-use crate::device::{LinkState, Measurement, Routine, RoutineEnd, RoutineEvent, SearchEnd, StepCapture, Task};
+use crate::device::{
+    DeviceError, LinkState, Measurement, Routine, RoutineEnd, RoutineEvent, SearchEnd, StepCapture, Task,
+};
 use crate::geometry::{Base, Flange, Profile, Transform};
 use crate::session::edit::{CellValue, free_label};
 use crate::session::model::UnknownFields;
@@ -191,6 +193,10 @@ impl Workbench {
     fn end_routine(&mut self, end: &RoutineEnd) {
         let Some(measuring) = self.cell.measuring.take() else { return };
         self.cell.view.activity = Activity::Idle;
+        self.cell.view.last_end = Some(end.clone());
+        if self.go_on_elsewhere(&measuring, end) {
+            return;
+        }
         let num_captures = if measuring.document_id.is_some() { measuring.num_captures } else { 0 };
         if let Some(message) = words::routine_ended(&words::station(&measuring.label), num_captures, end) {
             self.notify(NoticeKind::Error, message);
@@ -198,11 +204,24 @@ impl Workbench {
         if let RoutineEnd::Searched(SearchEnd::NoArcAtStart { .. } | SearchEnd::ResidualGrew { .. }) = end {
             self.leave_out(&measuring);
         }
-        if let (Some(pose), false) = (measuring.go_to, end.is_success()) {
-            self.avoid(pose);
+        match measuring.go_to {
+            _ if end.is_success() => self.cell.proposing.note_measured(),
+            Some(pose) => self.cell.proposing.avoid(pose),
+            None => {}
         }
-        self.cell.view.last_end = Some(end.clone());
         self.go_on_after(end);
+    }
+
+    /// A pose that the robot would not go to is no station: a run looks for another one. Answers whether it does.
+    fn go_on_elsewhere(&mut self, measuring: &Measuring, end: &RoutineEnd) -> bool {
+        let (Some(pose), RoutineEnd::Failed { error: DeviceError::Refused { .. }, .. }) = (measuring.go_to, end) else {
+            return false;
+        };
+        if measuring.num_captures > 0 {
+            return false;
+        }
+        let num_refused = self.cell.proposing.note_refused(pose);
+        self.look_elsewhere(num_refused)
     }
 
     /// Captures that show no ball, or one that moved, take no part until somebody has looked.

@@ -118,8 +118,14 @@ impl Workbench {
         if is_same {
             return false;
         }
-        self.disarm();
+        self.cell.armed = None;
+        self.cell.view.is_armed = false;
         self.notify(NoticeKind::Error, words::DISARMED.to_owned());
+        match &self.cell.measuring {
+            // It is bound to the connection that is gone, and ends by that, in its name; a pause must not keep it from that.
+            Some(measuring) => measuring.routine.control().pause(false),
+            None => self.end_run(Some(words::LINK_LOST.to_owned())),
+        }
         true
     }
 

@@ -1,6 +1,7 @@
 //! The live cell behind the window: its links, its routine, its run, and what they bring into the document.
 
 mod captures;
+mod choose;
 mod links;
 mod practice;
 mod proposals;

@@ -1,29 +1,18 @@
 //! The next station's pose, before anything moves: from the plan where there is a solution, otherwise roughly.
 
-use std::sync::Arc;
-
 use crate::app::cell::{Proposal, RoughMounting};
 use crate::app::jobs::{JobOutcome, Slot};
-use crate::calibrate::{BallProblem, Noise, Reading as MeasuredReading, best_available};
-use crate::device::{Arming, LinkState, MotionRefusal, RobotReport};
+use crate::calibrate::{Noise, Reading as MeasuredReading};
+use crate::device::{LinkState, MotionRefusal};
 use crate::fit::ArcFit;
 use crate::geometry::{Base, Flange, Profile, Rigid, Transform, Vec3};
-use crate::plan::{
-    Limits, MeasuredStation, Plan, PlanRefusal, PlannedStation, RoughCell, View, next_rough, next_stations,
-};
+use crate::plan::{MeasuredStation, PlannedStation, RoughCell, View};
 use crate::session::Reading;
 use crate::text::cell as words;
 
-use super::super::{NoticeKind, Results, Workbench};
+use super::super::{NoticeKind, Workbench};
+use super::choose::{Basis, Chooser, Chosen};
 
-/// How often other poses are looked for before it is said that none can be gone to, each time within limits that are
-/// narrower by this factor.
-const MOST_TRIES: usize = 10;
-const NARROWER: f64 = 0.8;
-/// Poses that are worked out at once where there is a solution.
-const NUM_AT_ONCE: usize = 4;
-/// A pose is that of an avoided one if it is turned against it by less than this, degrees.
-const SAME_POSE_DEG: f64 = 3.0;
 /// The ball's centre stays so far inside the ends of the line that its arc does too, radii ...
 const ARC_HALF_WIDTH_RADII: f64 = 0.6;
 /// ... but may always be this far from the middle, radii.
@@ -39,96 +28,30 @@ pub(super) struct Proposing {
     choosing: Slot<Result<Chosen, String>>,
     /// Poses that were not wanted, or where nothing could be measured.
     avoided: Vec<Transform<Base, Flange>>,
+    /// How many of them in a row the robot would not go to.
+    num_refused: u32,
 }
 
 impl Proposing {
     pub const fn is_wanted(&self) -> bool {
         self.is_waiting || self.choosing.is_running()
     }
-}
 
-/// A station with the reason for it.
-type Chosen = (PlannedStation, String);
-
-/// What stations are chosen by.
-enum Basis {
-    /// A solution, and the plan that was made for it.
-    Solved { problem: Arc<BallProblem>, results: Arc<Results>, planned: Plan },
-    /// The mounting as it was said, and where the ball was seen.
-    Rough { cell: RoughCell, stations: Vec<MeasuredStation>, view: View },
-}
-
-/// Chooses a station that can be gone to.
-struct Chooser {
-    basis: Basis,
-    avoided: Vec<Transform<Base, Flange>>,
-    limits: Limits,
-    arming: Option<Arming>,
-    report: Option<RobotReport>,
-}
-
-impl Chooser {
-    /// The first pose that can be gone to; if there is none, the first of all, with what is in its way.
-    fn choose(mut self) -> Result<Chosen, String> {
-        let mut first = None;
-        for _ in 0..MOST_TRIES {
-            let candidates = match self.candidates() {
-                Ok(candidates) => candidates,
-                Err(reason) if first.is_none() => return Err(reason),
-                Err(_) => break,
-            };
-            for chosen in candidates {
-                let to = chosen.0.base_from_flange;
-                if self.is_free(&to) {
-                    return Ok(chosen);
-                }
-                self.avoided.push(to);
-                first.get_or_insert(chosen);
-            }
-            // Nearer to the middle of all stations the ways are shorter.
-            self.limits.max_tilt_deg *= NARROWER;
-            self.limits.max_spin_deg *= NARROWER;
-        }
-        first.ok_or_else(|| PlanRefusal::NothingWithinLimits.to_string())
+    /// Nothing was measured at this pose: it is not proposed again as long as there are others.
+    pub fn avoid(&mut self, pose: Transform<Base, Flange>) {
+        self.avoided.push(pose);
     }
 
-    /// The best stations that are not avoided.
-    fn candidates(&mut self) -> Result<Vec<Chosen>, String> {
-        match &mut self.basis {
-            Basis::Solved { problem, results, planned } => {
-                let now_mm = planned.workspace_point_std_mm;
-                let is_avoided = |station: &PlannedStation| {
-                    let rotation = station.base_from_flange.rotation();
-                    self.avoided.iter().any(|pose| pose.rotation().angle_to(&rotation).to_degrees() < SAME_POSE_DEG)
-                };
-                let mut stations = std::mem::take(&mut planned.stations);
-                if stations.is_empty() {
-                    let solution =
-                        best_available(&results.methods).ok_or_else(|| PlanRefusal::Undetermined.to_string())?;
-                    let plan = next_stations(problem, solution, &self.limits, NUM_AT_ONCE);
-                    stations = plan.map_err(|refusal| refusal.to_string())?.stations;
-                }
-                stations.retain(|station| !is_avoided(station));
-                let with_reason = |station| {
-                    let reason = words::reason_of_planned(&station, now_mm);
-                    (station, reason)
-                };
-                Ok(stations.into_iter().map(with_reason).collect())
-            }
-            Basis::Rough { cell, stations, view } => {
-                let (station, _) = next_rough(cell, stations, &self.avoided, view, &self.limits)
-                    .map_err(|refusal| refusal.to_string())?;
-                let reason = words::reason_of_rough(&station);
-                Ok(vec![(station, reason)])
-            }
-        }
+    /// The robot would not go to this pose. Answers how many in a row that were.
+    pub fn note_refused(&mut self, pose: Transform<Base, Flange>) -> u32 {
+        self.avoid(pose);
+        self.num_refused += 1;
+        self.num_refused
     }
 
-    /// Whether nothing but the arm switch is in the way.
-    fn is_free(&self, to: &Transform<Base, Flange>) -> bool {
-        let (Some(arming), Some(report)) = (&self.arming, &self.report) else { return true };
-        let speed_mm_s = arming.limits.transit_speed_mm_s;
-        arming.check(&report.readiness, &report.base_from_flange, to, speed_mm_s).is_ok()
+    /// A station was measured: where the robot can go is known again.
+    pub const fn note_measured(&mut self) {
+        self.num_refused = 0;
     }
 }
 
@@ -146,14 +69,9 @@ impl Workbench {
     /// Another one than that which is proposed.
     pub(super) fn skip_proposal(&mut self) {
         if let Some(proposal) = self.cell.view.proposal.take() {
-            self.avoid(proposal.station.base_from_flange);
+            self.cell.proposing.avoid(proposal.station.base_from_flange);
         }
         self.want_proposal();
-    }
-
-    /// Does not propose this pose again as long as there are others.
-    pub(super) fn avoid(&mut self, pose: Transform<Base, Flange>) {
-        self.cell.proposing.avoided.push(pose);
     }
 
     pub(super) fn forget_proposal(&mut self) {
@@ -169,7 +87,11 @@ impl Workbench {
                 JobOutcome::Done(Ok((station, reason))) => {
                     self.cell.view.proposal = Some(self.proposal_of(station, reason));
                 }
-                JobOutcome::Done(Err(reason)) => self.take_no_proposal(reason),
+                JobOutcome::Done(Err(reason)) => {
+                    // Once round: all are offered again.
+                    self.cell.proposing.avoided.clear();
+                    self.take_no_proposal(reason);
+                }
                 broken => {
                     self.notify_broken("planning", &broken);
                     self.end_run(Some(words::NO_PROPOSAL.to_owned()));
@@ -183,13 +105,14 @@ impl Workbench {
         self.cell.proposing.is_waiting = false;
         match self.basis() {
             Ok(basis) => {
-                let chooser = Chooser {
+                let mut chooser = Chooser {
                     basis,
                     avoided: self.cell.proposing.avoided.clone(),
                     limits: self.plan_limits,
                     arming: self.arming(),
                     report: self.cell.view.robot.latest.clone(),
                 };
+                (0..self.cell.proposing.num_refused).for_each(|_| chooser.narrow());
                 self.cell.proposing.choosing.start("propose", &self.wake, move |_| chooser.choose());
             }
             Err(reason) => self.take_no_proposal(reason),

@@ -1,13 +1,16 @@
 //! A run over several stations: measure where the robot stands, then propose, go, measure, and so on.
 
 use crate::app::cell::{Activity, RunView};
-use crate::device::{DeviceError, MotionRefusal, RoutineEnd};
+use crate::device::{MotionRefusal, RoutineEnd};
 use crate::text::cell as words;
 
 use super::super::{NoticeKind, Workbench};
 
 /// So many stations in a row that were given up end a run.
 const MOST_FAILED_IN_A_ROW: u16 = 3;
+
+/// So many poses in a row that the robot would not go to end it as well.
+const MOST_REFUSED_IN_A_ROW: u32 = 10;
 
 /// What a run waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,8 +96,6 @@ impl Workbench {
         let is_complete = num_done >= run.num_stations;
         self.show_run();
         match end {
-            // That pose is out of reach, others may not be.
-            RoutineEnd::Failed { error: DeviceError::Refused { .. }, .. } if num_in_a_row < MOST_FAILED_IN_A_ROW => {}
             // What happened is in the notice before.
             RoutineEnd::Failed { .. } => self.end_run(Some(words::DEVICE_FAILED.to_owned())),
             RoutineEnd::Stopped { .. } => self.end_run(Some(words::STOPPED.to_owned())),
@@ -108,6 +109,15 @@ impl Workbench {
             }
             _ => {}
         }
+    }
+
+    /// The robot would not go to a pose, once more: a run asks for another one, unless it was too many.
+    pub(super) fn look_elsewhere(&mut self, num_refused: u32) -> bool {
+        if self.cell.run.is_none() || num_refused >= MOST_REFUSED_IN_A_ROW {
+            return false;
+        }
+        self.set_stage(Stage::Between);
+        true
     }
 
     /// What a run does between two routines.

@@ -1,5 +1,7 @@
 //! An LJ-V7000 controller's command port in the high-speed mode.
 
+use std::time::Duration;
+
 use crate::device::sensor::ljv::messages::{
     ProfileReply, ProfileRequest, RawProfile, Reply, Request, SettingRequest, WIRE_UNIT_MM, code, command,
 };
@@ -17,53 +19,94 @@ const ALL_ZERO: [u8; 4] = [0; 4];
 
 /// Talks to one client.
 pub fn serve(world: &World, connection: &mut Connection) {
-    let mut program = 0;
     loop {
         // What cannot be a request is not answered: there is no telling where the next one begins.
         let bytes = connection.receive(|bytes| Request::len_in(bytes).unwrap_or(Some(0)));
         let Some(request) = bytes.and_then(|bytes| Request::parse(&bytes).ok()) else { return };
-        let reply = Reply { version: request.version, ..answer(world, &request, &mut program) };
-        if !connection.send(&reply.encode()) {
+        let reply = match answer(world, &request) {
+            Ok(data) => Reply::new(request.command, world.program(), data),
+            Err(refusal) => Reply::refusal(request.command, world.program(), refusal),
+        };
+        if !connection.send(&Reply { version: request.version, ..reply }.encode()) {
             return;
         }
     }
 }
 
-fn answer(world: &World, request: &Request, program: &mut u8) -> Reply {
-    let number = request.command;
-    let data = request.data.as_slice();
-    let done = |program: u8, data: Vec<u8>| Reply::new(number, program, data);
-    match (number, data) {
-        (command::SOFTWARE_TRIGGER, []) => done(*program, Vec::new()),
+/// Pushes profiles while the stream runs. The client sends nothing.
+pub fn serve_stream(world: &World, connection: &mut Connection) {
+    let mut next = None;
+    while connection.take_arrived(STREAM_LOOK).is_some() {
+        match (world.stream_from(), next) {
+            (Some(from), _) => {
+                let (newest, _) = world.trigger_counts();
+                // What could not be sent in time is left out.
+                let first = next.unwrap_or(from).max(newest.saturating_sub(MAX_BEHIND));
+                for trigger_count in first..=newest {
+                    let profiles = vec![raw_profile(world, trigger_count)];
+                    let whole = ProfileReply { profiles, ..scales(world) }.encode();
+                    if !connection.send(&whole[INFO_LEN..]) {
+                        return;
+                    }
+                }
+                next = Some(first.max(newest.saturating_add(1)));
+            }
+            (None, Some(_)) => {
+                next = None;
+                if !connection.send(&STREAM_STOPPED) {
+                    return;
+                }
+            }
+            (None, None) => {}
+        }
+    }
+}
+
+/// The data of the reply, or the code of the refusal.
+fn answer(world: &World, request: &Request) -> Result<Vec<u8>, u8> {
+    match (request.command, request.data.as_slice()) {
+        (command::SOFTWARE_TRIGGER, []) => Ok(Vec::new()),
         (command::CLEAR_MEMORY, []) => {
             world.forget_profiles(world.trigger_counts().0);
-            done(*program, Vec::new())
+            Ok(Vec::new())
         }
-        (command::CHANGE_PROGRAM, [wanted @ 0..=15, _, _, _]) => {
-            *program = *wanted;
-            done(*program, Vec::new())
+        (command::CHANGE_PROGRAM, [program @ 0..=15, _, _, _]) => {
+            world.change_program(*program);
+            Ok(Vec::new())
         }
-        (command::CHANGE_PROGRAM, [_, _, _, _]) => Reply::refusal(number, *program, code::PARAMETER),
-        (command::GET_SETTING, _) if SettingRequest::parse(data).is_some() => done(*program, ALL_ZERO.to_vec()),
+        (command::CHANGE_PROGRAM, [_, _, _, _]) => Err(code::PARAMETER),
+        (command::GET_SETTING, data) if SettingRequest::parse(data).is_some() => Ok(ALL_ZERO.to_vec()),
         (command::SET_SETTING | command::REFLECT_SETTING, [_, ..]) | (command::GET_ERROR | CHECK_MEMORY_ACCESS, []) => {
-            done(*program, ALL_ZERO.to_vec())
+            Ok(ALL_ZERO.to_vec())
         }
-        (command::GET_PROFILE, _) => match ProfileRequest::parse(data) {
-            Some(wanted) => profiles(world, wanted).map_or_else(
-                || Reply::refusal(number, *program, code::PARAMETER),
-                |reply| done(*program, reply.encode()),
-            ),
-            None => Reply::refusal(number, *program, code::COMMAND_LENGTH),
-        },
-        _ if KNOWN.contains(&number) => Reply::refusal(number, *program, code::COMMAND_LENGTH),
-        _ => Reply::refusal(number, *program, code::UNDEFINED_COMMAND),
+        (command::GET_PROFILE, data) => {
+            let wanted = ProfileRequest::parse(data).ok_or(code::COMMAND_LENGTH)?;
+            profiles(world, wanted).map(|reply| reply.encode()).ok_or(code::PARAMETER)
+        }
+        (PREPARE_STREAM, [position @ 0..=2, _, _, _]) => Ok(prepare_stream(world, *position)),
+        (START_STREAM, [PREPARE_STREAM, _, _, _, start_code @ ..]) => {
+            let start = start_code.try_into().map(u32::from_le_bytes).map_err(|_| code::COMMAND_LENGTH)?;
+            world.set_stream(Some(start));
+            Ok(Vec::new())
+        }
+        (STOP_STREAM, _) => {
+            world.set_stream(None);
+            Ok(Vec::new())
+        }
+        (PREPARE_STREAM | START_STREAM, [_, _, _, _, ..]) => Err(code::PARAMETER),
+        (number, _) if KNOWN.contains(&number) => Err(code::COMMAND_LENGTH),
+        _ => Err(code::UNDEFINED_COMMAND),
     }
 }
 
 /// Asks whether the memory is being written to.
 const CHECK_MEMORY_ACCESS: u8 = 0x34;
+/// The high-speed stream.
+const PREPARE_STREAM: u8 = 0x47;
+const START_STREAM: u8 = 0xa0;
+const STOP_STREAM: u8 = 0x48;
 /// What is answered above where its length is right.
-const KNOWN: [u8; 8] = [
+const KNOWN: [u8; 10] = [
     command::GET_ERROR,
     command::SOFTWARE_TRIGGER,
     command::CLEAR_MEMORY,
@@ -72,11 +115,44 @@ const KNOWN: [u8; 8] = [
     command::SET_SETTING,
     command::REFLECT_SETTING,
     CHECK_MEMORY_ACCESS,
+    PREPARE_STREAM,
+    START_STREAM,
 ];
+/// Bytes of a reply's data before its first profile; in the last of them are the scales.
+const INFO_LEN: usize = 36;
+const SCALES_AT: usize = 24;
+/// How often it is looked for new profiles, and how many may wait.
+const STREAM_LOOK: Duration = Duration::from_millis(5);
+const MAX_BEHIND: u32 = 50;
+/// What is sent behind the last profile.
+const STREAM_STOPPED: [u8; 8] = [0xff, 0xff, 0xff, 0xff, 1, 0, 0, 0];
+
+/// The code to start the stream with is the count of its first profile.
+fn prepare_stream(world: &World, position: u8) -> Vec<u8> {
+    let (newest, first_held) = world.trigger_counts();
+    let first = if position == 1 { first_held } else { newest.saturating_add(1) };
+    let mut data = vec![0; 4];
+    data.extend(first.to_le_bytes());
+    // One head, no luminance.
+    data.extend([0, 0, 0, 0, 1, 0, 0, 0]);
+    data.extend(&scales(world).encode()[SCALES_AT..INFO_LEN]);
+    data
+}
+
+/// No profiles, only how they are to be read.
+fn scales(world: &World) -> ProfileReply {
+    let head = world.head();
+    ProfileReply {
+        num_points: Head::NUM_POINTS,
+        range_unit: head.height_unit,
+        first_x: wire(head.x_mm(0)),
+        x_pitch: wire(head.pitch_mm),
+        ..ProfileReply::default()
+    }
+}
 
 /// `None` where the request's values are none of the controller's.
 fn profiles(world: &World, wanted: ProfileRequest) -> Option<ProfileReply> {
-    let head = world.head();
     let (newest, first_held) = world.trigger_counts();
     // The first profile of all has the count 1 and the number 0.
     let oldest = first_held.max(newest.saturating_sub(MEMORY - 1)).max(1);
@@ -101,11 +177,8 @@ fn profiles(world: &World, wanted: ProfileRequest) -> Option<ProfileReply> {
         current_no: number_of(newest),
         oldest_no: number_of(if num_held > 0 { oldest } else { newest }),
         first_no: number_of(if num > 0 { first } else { newest }),
-        num_points: Head::NUM_POINTS,
-        range_unit: head.height_unit,
-        first_x: wire(head.x_mm(0)),
-        x_pitch: wire(head.pitch_mm),
         profiles,
+        ..scales(world)
     })
 }
 
