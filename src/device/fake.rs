@@ -58,6 +58,8 @@ pub(super) struct World {
     pub num_stops: u32,
     pub num_connections: u32,
     pub takes_stop: bool,
+    /// Happens once, while the robot is asked for its pose.
+    pub during_report: Option<Box<dyn FnOnce() + Send>>,
     scene: Scene,
     noise: Random,
 }
@@ -102,6 +104,7 @@ impl FakeCell {
             num_stops: 0,
             num_connections: 0,
             takes_stop: true,
+            during_report: None,
             scene,
             noise: Random::new(7, 1),
         })))
@@ -189,6 +192,10 @@ impl RobotDriver for FakeRobot {
 
     fn report(&mut self, deadline: Instant) -> Result<RobotReport, DeviceError> {
         self.meet_fault(deadline)?;
+        let happens = self.0.world().during_report.take();
+        if let Some(happens) = happens {
+            happens();
+        }
         let mut world = self.0.world();
         if world.fault() == Fault::RobotDrifts {
             world.pose = Transform::from_rigid(Rigid::translation(0.1, 0.0, 0.0) * world.pose.rigid());

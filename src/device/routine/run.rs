@@ -155,6 +155,8 @@ impl Runner {
     fn move_to(&self, target: &Transform<Base, Flange>, speed_mm_s: f64) -> Result<(), Break> {
         self.control.wait_while_paused()?;
         let RobotReport { base_from_flange, readiness, .. } = self.robot.report()?;
+        // Somebody may have wanted a stop while the robot was asked.
+        self.control.wait(Duration::ZERO)?;
         let arming = self.task.arming.ok_or(MotionRefusal::NotArmed)?;
         let motion = arming.check(&readiness, &base_from_flange, target, speed_mm_s)?;
         self.tell(RoutineEvent::Moving { base_from_flange: *target });

@@ -26,6 +26,13 @@ pub(super) enum Next<Request> {
     Nothing,
 }
 
+/// When a client was bound: what begins then goes on neither over a later connection nor past a later stop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Binding {
+    connection: u64,
+    num_stops_asked: u64,
+}
+
 #[derive(Debug)]
 struct Inside<Request> {
     requests: VecDeque<Request>,
@@ -189,42 +196,47 @@ impl<Request> Post<Request> {
 
     /// Asks, and waits for the answer until the deadline and a little longer: the thread keeps it, too.
     ///
-    /// Over any other connection than the one given there is no answer.
+    /// Who is bound gets no answer over another connection or after a stop. What still waits when a stop is asked for is
+    /// not done any more.
     pub fn ask<Answer>(
         &self,
         what: &str,
-        connection: Option<u64>,
+        binding: Option<Binding>,
         patience: Duration,
         request: impl FnOnce(SyncSender<Result<Answer, DeviceError>>) -> Request,
     ) -> Result<Answer, DeviceError> {
-        self.need_connection(what, connection)?;
+        self.need_connection(what, binding)?;
         let (sender, receiver): (_, Receiver<Result<Answer, DeviceError>>) = sync_channel(1);
         let timeout = || DeviceError::Timeout { device: self.device, request: what.to_owned(), waited: patience };
-        {
+        let stopped = || DeviceError::Stopped { device: self.device };
+        let num_stops_asked = {
             let mut inside = lock(&self.board.inside);
-            if inside.is_over || inside.is_left {
-                return Err(DeviceError::Stopped { device: self.device });
+            let is_past_stop = binding.is_some_and(|binding| binding.num_stops_asked != inside.num_stops_asked);
+            if inside.is_over || inside.is_left || is_past_stop {
+                return Err(stopped());
             }
             if inside.requests.len() >= MAX_WAITING {
                 return Err(timeout());
             }
             inside.requests.push_back(request(sender));
-        }
+            inside.num_stops_asked
+        };
         self.board.changed.notify_all();
         match receiver.recv_timeout(patience) {
             Ok(answer) => answer,
             Err(RecvTimeoutError::Timeout) => Err(timeout()),
+            Err(RecvTimeoutError::Disconnected) if self.num_stops_asked() != num_stops_asked => Err(stopped()),
             Err(RecvTimeoutError::Disconnected) => Err(self.closed(what)),
         }
     }
 
-    fn need_connection(&self, what: &str, connection: Option<u64>) -> Result<(), DeviceError> {
+    fn need_connection(&self, what: &str, binding: Option<Binding>) -> Result<(), DeviceError> {
         let (state, num_connections) = {
             let link = lock(&self.link);
             (link.state(Instant::now()), link.num_connections())
         };
         match state {
-            LinkState::Ready if connection.is_none_or(|connection| connection == num_connections) => Ok(()),
+            LinkState::Ready if binding.is_none_or(|binding| binding.connection == num_connections) => Ok(()),
             LinkState::Ready => Err(self.closed(what)),
             LinkState::Failed { error, .. } => Err(error),
             LinkState::Off | LinkState::Connecting => Err(DeviceError::NotReady {
@@ -244,11 +256,21 @@ impl<Request> Post<Request> {
         lock(&self.link).num_connections()
     }
 
-    /// Asks for a stop; answers which one it is.
+    fn num_stops_asked(&self) -> u64 {
+        lock(&self.board.inside).num_stops_asked
+    }
+
+    /// To the connection that is there now, until the next stop.
+    pub fn bind(&self) -> Binding {
+        Binding { connection: self.num_connections(), num_stops_asked: self.num_stops_asked() }
+    }
+
+    /// Asks for a stop; answers which one it is. Whatever waits is dropped, and so refused: it could be a move.
     pub fn ask_stop(&self) -> u64 {
         let mut count = 0;
         self.change(|inside| {
             inside.num_stops_asked += 1;
+            inside.requests.clear();
             count = inside.num_stops_asked;
         });
         count
@@ -277,5 +299,34 @@ impl<Request> Post<Request> {
     fn change(&self, change: impl FnOnce(&mut Inside<Request>)) {
         change(&mut lock(&self.board.inside));
         self.board.changed.notify_all();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+
+    #[test]
+    fn what_waits_as_a_stop_is_asked_for_is_not_done() {
+        /// Long past anything that is waited for here.
+        const PATIENCE: Duration = Duration::from_secs(20);
+        let post = Arc::new(Post::new("Test", Deadlines::default(), Arc::new(|| {})));
+        post.change_link(|link| link.on_connected(Instant::now()));
+        let asked = Arc::clone(&post);
+        let asker = std::thread::spawn(move || {
+            asked.ask("a move", None, PATIENCE, |reply: SyncSender<Result<(), DeviceError>>| reply)
+        });
+        let deadline = Instant::now() + PATIENCE;
+        while lock(&post.board.inside).requests.is_empty() {
+            assert!(Instant::now() < deadline, "the move waits");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        let count = post.ask_stop();
+        assert!(matches!(post.next(None), Next::Stop(_)));
+        post.note_stopped(count, Some(true));
+        assert!(matches!(post.next(Some(Instant::now())), Next::Nothing));
+        assert_eq!(asker.join().ok(), Some(Err(DeviceError::Stopped { device: "Test" })));
     }
 }
