@@ -74,7 +74,6 @@ fn answer(world: &World, request: &Request) -> Result<Vec<u8>, u8> {
             world.change_program(*program);
             Ok(Vec::new())
         }
-        (command::CHANGE_PROGRAM, [_, _, _, _]) => Err(code::PARAMETER),
         (command::GET_SETTING, data) if SettingRequest::parse(data).is_some() => Ok(ALL_ZERO.to_vec()),
         (command::SET_SETTING | command::REFLECT_SETTING, [_, ..]) | (command::GET_ERROR | CHECK_MEMORY_ACCESS, []) => {
             Ok(ALL_ZERO.to_vec())
@@ -93,7 +92,7 @@ fn answer(world: &World, request: &Request) -> Result<Vec<u8>, u8> {
             world.set_stream(None);
             Ok(Vec::new())
         }
-        (PREPARE_STREAM | START_STREAM, [_, _, _, _, ..]) => Err(code::PARAMETER),
+        (command::CHANGE_PROGRAM | PREPARE_STREAM | START_STREAM, [_, _, _, _, ..]) => Err(code::PARAMETER),
         (number, _) if KNOWN.contains(&number) => Err(code::COMMAND_LENGTH),
         _ => Err(code::UNDEFINED_COMMAND),
     }
