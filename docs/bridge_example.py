@@ -6,6 +6,7 @@ Python's standard library only. To make a bridge of it, replace the classes Robo
 controller; what is below them is the protocol (docs/bridge.md) and can stay as it is.
 """
 
+import contextlib
 import json
 import math
 import socketserver
@@ -147,4 +148,5 @@ if __name__ == "__main__":
     robot = Robot()
     serve("robot", robot, ports[0])
     serve("profiler", Profiler(robot), ports[1])
-    sys.stdin.read()  # until its input ends, or Ctrl-C
+    with contextlib.suppress(KeyboardInterrupt):
+        sys.stdin.read()  # until its input ends, or Ctrl-C

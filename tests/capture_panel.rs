@@ -186,7 +186,7 @@ fn every_button_asks_for_exactly_its_command() {
     let running = CellView { run: Some(RUN), activity: Activity::Settling, ..armed() };
     let paused = CellView { run: Some(RunView { is_paused: true, ..RUN }), ..armed() };
     let replaying = CellView { replay: Some(ReplayView { station_idx: 0, capture_idx: 2, is_over: false }), ..armed() };
-    for (view, name, command) in [
+    for (view, name, command) in vec![
         (armed(), words::FIND, CellCommand::FindLargestArc),
         (armed(), words::CAPTURE, CellCommand::CaptureStation),
         (armed(), words::PROPOSE_NAME, CellCommand::ProposeStation),

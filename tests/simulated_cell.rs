@@ -104,6 +104,29 @@ fn ljv_answers_golden_bytes_and_whole_profiles() {
 }
 
 #[test]
+fn settings_are_told_as_they_are_and_not_taken() {
+    let cell = SimCell::start(&quick()).expect("free ports");
+    let mut client = connect(cell.sensor_setup.endpoint.port);
+    let mut ask = |request: &str| {
+        ask_until(&mut client, &hex(request), |bytes| {
+            bytes.first_chunk().is_some_and(|prefix| bytes.len() >= 4 + u32::from_le_bytes(*prefix) as usize)
+        })
+    };
+    // The trigger mode of program 5: continuous. Its sampling: 100 Hz. A client polls as often as this says.
+    let trigger_mode = "20000000 0100f000 00000000 14000000 31000000 00000000 01000000 15000100 00000000";
+    assert_eq!(ask(trigger_mode)[17..], [&[0; 7][..], &[0, 0, 0, 0], &[0; 4]].concat());
+    let sampling = "20000000 0100f000 00000000 14000000 31000000 00000000 01000000 15000200 000000cd";
+    assert_eq!(ask(sampling)[28..], [3, 0, 0, 0]);
+    let write = "20000000 0100f000 00000000 14000000 32000000 01000000 15000100 00000000 01000000";
+    assert_eq!(ask(write)[17], 0x41);
+    assert_eq!(ask(trigger_mode)[28], 0, "what was refused is not set");
+    // Begin and end of a batch.
+    for command in ["22", "23"] {
+        assert_eq!(ask(&format!("10000000 0100f000 00000000 04000000 {command}000000"))[17], 0x41);
+    }
+}
+
+#[test]
 fn the_high_speed_port_pushes_one_profile_after_the_other() {
     const PROFILE: usize = 2028;
     let cell = SimCell::start(&quick()).expect("free ports");

@@ -7,6 +7,7 @@ mod curpos;
 mod fake;
 mod fuzz;
 mod mappdk;
+mod messages;
 mod simulated;
 mod ur;
 mod wire;

@@ -157,7 +157,11 @@ impl Workbench {
         }
     }
 
+    /// A proposal was accepted, which ends a pause as well.
     pub(super) fn run_is_measuring(&mut self) {
+        if let Some(run) = &mut self.cell.run {
+            run.is_paused = false;
+        }
         self.set_stage(Stage::Measuring);
     }
 

@@ -14,7 +14,7 @@ use crate::device::sim::world::World;
 const MEMORY: u32 = 1000;
 /// Most profiles of one reply, so that it stays short.
 const MAX_PROFILES: u8 = 16;
-/// Nothing is wrong, nothing is busy, and settings are 0: continuous trigger, batch off, and so on.
+/// Nothing is wrong, and nothing is busy.
 const ALL_ZERO: [u8; 4] = [0; 4];
 
 /// Talks to one client.
@@ -74,11 +74,12 @@ fn answer(world: &World, request: &Request) -> Result<Vec<u8>, u8> {
             world.change_program(*program);
             Ok(Vec::new())
         }
-        (command::CHANGE_PROGRAM, [_, _, _, _]) => Err(code::PARAMETER),
-        (command::GET_SETTING, data) if SettingRequest::parse(data).is_some() => Ok(ALL_ZERO.to_vec()),
-        (command::SET_SETTING | command::REFLECT_SETTING, [_, ..]) | (command::GET_ERROR | CHECK_MEMORY_ACCESS, []) => {
-            Ok(ALL_ZERO.to_vec())
+        (command::GET_SETTING, data) => SettingRequest::parse(data).map(setting).ok_or(code::COMMAND_LENGTH),
+        // A setting that is taken and changes nothing would mislead; and there are no batches.
+        (command::SET_SETTING | command::REFLECT_SETTING, [_, ..]) | (START_BATCH | STOP_BATCH, []) => {
+            Err(code::STATUS)
         }
+        (command::GET_ERROR | CHECK_MEMORY_ACCESS, []) => Ok(ALL_ZERO.to_vec()),
         (command::GET_PROFILE, data) => {
             let wanted = ProfileRequest::parse(data).ok_or(code::COMMAND_LENGTH)?;
             profiles(world, wanted).map(|reply| reply.encode()).ok_or(code::PARAMETER)
@@ -93,12 +94,24 @@ fn answer(world: &World, request: &Request) -> Result<Vec<u8>, u8> {
             world.set_stream(None);
             Ok(Vec::new())
         }
-        (PREPARE_STREAM | START_STREAM, [_, _, _, _, ..]) => Err(code::PARAMETER),
+        (command::CHANGE_PROGRAM | PREPARE_STREAM | START_STREAM, [_, _, _, _, ..]) => Err(code::PARAMETER),
         (number, _) if KNOWN.contains(&number) => Err(code::COMMAND_LENGTH),
         _ => Err(code::UNDEFINED_COMMAND),
     }
 }
 
+/// The settings do not change: 0 stands for a continuous trigger, batch off, and so on.
+fn setting(wanted: SettingRequest) -> Vec<u8> {
+    /// Within the triggers of a program; 3 is [`TRIGGERS_PER_S`] of 100.
+    const SAMPLING: [u8; 2] = [0, 2];
+    const SAMPLING_100_HZ: u8 = 3;
+    let is_sampling = wanted.kind >= SettingRequest::FIRST_PROGRAM && [wanted.category, wanted.item] == SAMPLING;
+    vec![if is_sampling { SAMPLING_100_HZ } else { 0 }, 0, 0, 0]
+}
+
+/// Begin and end of a batch.
+const START_BATCH: u8 = 0x22;
+const STOP_BATCH: u8 = 0x23;
 /// Asks whether the memory is being written to.
 const CHECK_MEMORY_ACCESS: u8 = 0x34;
 /// The high-speed stream.
@@ -106,12 +119,13 @@ const PREPARE_STREAM: u8 = 0x47;
 const START_STREAM: u8 = 0xa0;
 const STOP_STREAM: u8 = 0x48;
 /// What is answered above where its length is right.
-const KNOWN: [u8; 10] = [
+const KNOWN: [u8; 11] = [
     command::GET_ERROR,
     command::SOFTWARE_TRIGGER,
+    START_BATCH,
+    STOP_BATCH,
     command::CLEAR_MEMORY,
     command::CHANGE_PROGRAM,
-    command::GET_SETTING,
     command::SET_SETTING,
     command::REFLECT_SETTING,
     CHECK_MEMORY_ACCESS,
