@@ -28,8 +28,6 @@ struct State {
     /// What the dashboard answers; `None`: it does not know the question.
     is_remote: Option<bool>,
     ignores_programs: bool,
-    /// The program under way waits.
-    is_held_up: bool,
     is_dashboard_silent: bool,
     robot_mode: i32,
     safety_mode: i32,
@@ -49,7 +47,6 @@ impl Fake {
             knows_offset: true,
             is_remote: Some(true),
             ignores_programs: false,
-            is_held_up: false,
             is_dashboard_silent: false,
             robot_mode: 7,
             safety_mode: 1,
@@ -172,7 +169,8 @@ impl Fake {
     fn value(&self, name: &str) -> Option<Value> {
         let state = self.state();
         let has_program = state.program.is_some();
-        let is_moving = has_program && !state.is_held_up;
+        // In a safeguard stop a program waits.
+        let is_moving = has_program && state.safety_mode != 5;
         match name {
             "actual_TCP_pose" => Some(Value::Vector6(UrPose::from_pose(&state.base_from_tcp).0)),
             "actual_TCP_speed" => Some(Value::Vector6([0.0, if is_moving { 0.01 } else { 0.0 }, 0.0, 0.0, 0.0, 0.0])),
@@ -361,7 +359,7 @@ fn a_program_that_is_held_up_is_not_stopped() {
     wait_until(|| fake.state().program.is_some());
     {
         let mut state = fake.state();
-        (state.safety_mode, state.is_held_up, state.ignores_programs) = (5, true, true);
+        (state.safety_mode, state.ignores_programs) = (5, true);
     }
     let error = robot.stop(Instant::now() + Duration::from_secs(1)).expect_err("it would go on after a reset");
     assert!(matches!(error, DeviceError::NotReady { .. }) && error.leaves_connection_usable(), "{error:?}");
