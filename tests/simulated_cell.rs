@@ -162,6 +162,37 @@ fn a_dropped_cell_ends_its_clients_and_frees_its_ports() {
     for kind in RobotKind::ALL {
         let cell = SimCell::start(&SimOptions { robot: kind, ..quick() }).expect("free ports");
         let ports: Vec<u16> = cell.ports.iter().map(|(port, _)| *port).collect();
+#[test]
+fn a_stream_is_its_clients_own_and_ends_with_it() {
+    let cell = SimCell::start(&quick()).expect("free ports");
+    let stream_port = cell.ports.iter().find(|(_, what)| what.contains("high-speed")).expect("served").0;
+    let mut client = connect(cell.sensor_setup.endpoint.port);
+    let start = hex("18000000 0100f000 00000000 0c000000 a0000000 47000000 01000000");
+    let stop = hex("10000000 0100f000 00000000 04000000 48000000");
+    let note = hex("ffffffff 01000000");
+    let mut first = connect(stream_port);
+    // A stream is served to who was there when it was started: until bytes come nobody knows that the server has seen him.
+    let mut is_served = false;
+    first.set_nonblocking(true).expect("set");
+    while !is_served {
+        ask_until(&mut client, &start, |bytes| bytes.len() >= 28);
+        sleep(Duration::from_millis(20));
+        is_served = first.read(&mut [0; 64]).is_ok();
+    }
+    first.set_nonblocking(false).expect("set");
+    // Stopped and started at once: the note of the stop stands between the two.
+    ask_until(&mut client, &stop, |bytes| bytes.len() >= 28);
+    ask_until(&mut client, &start, |bytes| bytes.len() >= 28);
+    ask_until(&mut first, b"", |bytes| bytes.windows(note.len()).any(|window| window == note));
+    // The next client comes while that one runs and after it has gone without a stop: nothing of it is his.
+    let mut second = connect(stream_port);
+    sleep(Duration::from_millis(50));
+    drop(first);
+    sleep(Duration::from_millis(50));
+    second.set_read_timeout(Some(Duration::from_millis(100))).expect("a timeout");
+    assert!(second.read(&mut [0; 64]).is_err(), "profiles of another's stream");
+}
+
         let mut clients: Vec<TcpStream> = ports.iter().map(|port| connect(*port)).collect();
         drop(cell);
         for client in &mut clients {

@@ -168,8 +168,16 @@ struct Profiler {
     stale_at: Option<u32>,
     /// The program that is active.
     program: u8,
-    /// The first profile of the high-speed stream that runs.
-    stream_from: Option<u32>,
+    stream: Stream,
+}
+
+/// The high-speed stream that was started last.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stream {
+    /// Which it is: a client that has been served one is not served another's.
+    pub number: u64,
+    /// Its first profile; `None` once it was stopped.
+    pub from: Option<u32>,
 }
 
 /// The arm, the ball, the profiler.
@@ -404,15 +412,24 @@ impl World {
         self.now().0.profiler.program = program;
     }
 
-    /// The first profile of the high-speed stream; `None` while none runs.
+    /// The high-speed stream that was started last.
     #[must_use]
-    pub fn stream_from(&self) -> Option<u32> {
-        self.now().0.profiler.stream_from
+    pub fn stream(&self) -> Stream {
+        self.now().0.profiler.stream
     }
 
-    /// Starts that stream from a profile on, or ends it.
-    pub fn set_stream(&self, from: Option<u32>) {
-        self.now().0.profiler.stream_from = from;
+    /// Starts another from a profile on.
+    pub fn start_stream(&self, from: u32) {
+        let stream = &mut self.now().0.profiler.stream;
+        *stream = Stream { number: stream.number + 1, from: Some(from) };
+    }
+
+    /// Ends the stream of a number, unless another has taken its place.
+    pub fn end_stream(&self, number: u64) {
+        let stream = &mut self.now().0.profiler.stream;
+        if stream.number == number {
+            stream.from = None;
+        }
     }
 
     /// The profile of a count; the same count gives the same profile.
