@@ -135,6 +135,14 @@ fn dashboards_that_do_not_know_the_question_are_not_taken_for_a_no() {
     assert_eq!(parse_remote_control("true\n"), Some(true));
     assert_eq!(parse_remote_control("False"), Some(false));
     assert_eq!(parse_remote_control("could not understand: 'is in remote control'"), None);
+    // The end of a block inside is not that of the program: what stands behind it would run by itself.
+    let nested = b"def p():\n if x:\n  while(y):\n   movel(A)\n  end\n elif z:\n end\n movel(B)\nend # of p\n";
+    assert_eq!(Program::len_of_first(nested), Ok(Some(nested.len())));
+    for len in 0..nested.len() {
+        assert_eq!(Program::len_of_first(&nested[..len]), Ok(None));
+    }
+    // Not the words themselves.
+    assert_eq!(Program::len_of_first(b"iffy()\nend_of()\n"), Ok(Some(7)));
 }
 
 #[test]

@@ -201,16 +201,23 @@ impl Program {
     /// [`MessageError`] if it is too long.
     pub fn len_of_first(bytes: &[u8]) -> Result<Option<usize>, MessageError> {
         let mut end = 0;
-        let mut is_function = false;
+        let mut depth = 0_usize;
         for line in bytes.split_inclusive(|byte| *byte == b'\n') {
             if !line.ends_with(b"\n") {
                 break;
+        /// Each has an `end` of its own.
+        const OPENERS: [&[u8]; 5] = [b"def", b"sec", b"thread", b"if", b"while"];
             }
             end += line.len();
-            let words = line.trim_ascii();
-            is_function |= words.starts_with(b"def ") || words.starts_with(b"sec ");
-            let is_blank = words.is_empty();
-            if (is_function && words == b"end") || (!is_function && !is_blank) {
+            let line = line.trim_ascii();
+            let is_of_word = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
+            let word = line.split(|byte| !is_of_word(byte)).next().unwrap_or_default();
+            if OPENERS.contains(&word) {
+                depth += 1;
+            } else if word == b"end" {
+                depth = depth.saturating_sub(1);
+            }
+            if depth == 0 && !line.is_empty() {
                 return Ok(Some(end));
             }
         }
