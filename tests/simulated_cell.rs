@@ -224,6 +224,12 @@ fn ports_keep_their_distances_and_a_taken_one_is_named() {
 }
 
 #[test]
+    // All but the page of a robot that is not read by it.
+    let offset = cell.robot_setup.endpoint.port - 18735;
+    drop(cell);
+    let _page = TcpListener::bind(("127.0.0.1", 80 + offset)).expect("free again");
+    let pageless = SimCell::start(&SimOptions { port_offset: Some(offset), ..quick() }).expect("the others are free");
+    assert!(pageless.ports.iter().all(|(port, _)| *port != 80 + offset));
 fn the_command_serves_for_a_while_and_names_a_port_that_is_taken() {
     let run = |offset: u16| {
         let offset = offset.to_string();
