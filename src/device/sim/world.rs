@@ -274,6 +274,13 @@ impl World {
     }
 
     /// Sends the arm off from where it is, and says after how long, in real time, it will have arrived.
+    /// Where the flange is at joint angles as the controller shows them, degrees.
+    #[must_use]
+    pub fn flange_at(&self, shown_deg: [f64; 6]) -> Rigid {
+        let chain = &self.layout.chain;
+        chain.base_from_flange(&chain.joints_from_shown_deg(shown_deg))
+    }
+
     ///
     /// # Errors
     /// [`MotionError`]; the arm goes on with what it did before.
