@@ -24,6 +24,11 @@ fn quick() -> SimOptions {
     SimOptions { time_scale: 50.0, ..SimOptions::default() }
 }
 
+/// A hundred profiles a second: few enough for a client to see all of them.
+fn unhurried() -> SimOptions {
+    SimOptions { time_scale: 0.1, ..SimOptions::default() }
+}
+
 fn connect(port: u16) -> TcpStream {
     let stream = TcpStream::connect(("127.0.0.1", port)).expect("a server");
     stream.set_read_timeout(Some(PATIENCE)).expect("a timeout");
@@ -112,11 +117,11 @@ fn settings_are_told_as_they_are_and_not_taken() {
             bytes.first_chunk().is_some_and(|prefix| bytes.len() >= 4 + u32::from_le_bytes(*prefix) as usize)
         })
     };
-    // The trigger mode of program 5: continuous. Its sampling: 100 Hz. A client polls as often as this says.
+    // The trigger mode of program 5: continuous. Its sampling: 1 kHz. A client polls as often as this says.
     let trigger_mode = "20000000 0100f000 00000000 14000000 31000000 00000000 01000000 15000100 00000000";
     assert_eq!(ask(trigger_mode)[17..], [&[0; 7][..], &[0, 0, 0, 0], &[0; 4]].concat());
     let sampling = "20000000 0100f000 00000000 14000000 31000000 00000000 01000000 15000200 000000cd";
-    assert_eq!(ask(sampling)[28..], [3, 0, 0, 0]);
+    assert_eq!(ask(sampling)[28..], [6, 0, 0, 0]);
     let write = "20000000 0100f000 00000000 14000000 32000000 01000000 15000100 00000000 01000000";
     assert_eq!(ask(write)[17], 0x41);
     assert_eq!(ask(trigger_mode)[28], 0, "what was refused is not set");
@@ -129,7 +134,7 @@ fn settings_are_told_as_they_are_and_not_taken() {
 #[test]
 fn the_high_speed_port_pushes_one_profile_after_the_other() {
     const PROFILE: usize = 2028;
-    let cell = SimCell::start(&quick()).expect("free ports");
+    let cell = SimCell::start(&unhurried()).expect("free ports");
     let port_of = |what: &str| cell.ports.iter().find(|(_, found)| found.contains(what)).expect("served").0;
     let mut stream = connect(port_of("high-speed"));
     let mut client = connect(cell.sensor_setup.endpoint.port);
@@ -157,11 +162,6 @@ fn the_high_speed_port_pushes_one_profile_after_the_other() {
     assert_eq!((profiles.len() + rest.len() - note.len()) % PROFILE, 0);
 }
 
-#[test]
-fn a_dropped_cell_ends_its_clients_and_frees_its_ports() {
-    for kind in RobotKind::ALL {
-        let cell = SimCell::start(&SimOptions { robot: kind, ..quick() }).expect("free ports");
-        let ports: Vec<u16> = cell.ports.iter().map(|(port, _)| *port).collect();
 #[test]
 fn a_stream_is_its_clients_own_and_ends_with_it() {
     let cell = SimCell::start(&quick()).expect("free ports");
@@ -193,6 +193,11 @@ fn a_stream_is_its_clients_own_and_ends_with_it() {
     assert!(second.read(&mut [0; 64]).is_err(), "profiles of another's stream");
 }
 
+#[test]
+fn a_dropped_cell_ends_its_clients_and_frees_its_ports() {
+    for kind in RobotKind::ALL {
+        let cell = SimCell::start(&SimOptions { robot: kind, ..quick() }).expect("free ports");
+        let ports: Vec<u16> = cell.ports.iter().map(|(port, _)| *port).collect();
         let mut clients: Vec<TcpStream> = ports.iter().map(|port| connect(*port)).collect();
         drop(cell);
         for client in &mut clients {
@@ -219,17 +224,17 @@ fn ports_keep_their_distances_and_a_taken_one_is_named() {
     let same = SimOptions { port_offset: Some(taken - 18735), ..quick() };
     let refusal = SimCell::start(&same).expect_err("taken").to_string();
     assert!(refusal.contains(&taken.to_string()) && refusal.contains("--port-offset"), "{refusal}");
-    let folder = SimOptions { sensor: SensorKind::Folder, ..quick() };
-    assert!(SimCell::start(&folder).expect_err("no protocol").to_string().contains("watched folder"));
-}
-
-#[test]
     // All but the page of a robot that is not read by it.
     let offset = cell.robot_setup.endpoint.port - 18735;
     drop(cell);
     let _page = TcpListener::bind(("127.0.0.1", 80 + offset)).expect("free again");
     let pageless = SimCell::start(&SimOptions { port_offset: Some(offset), ..quick() }).expect("the others are free");
     assert!(pageless.ports.iter().all(|(port, _)| *port != 80 + offset));
+    let folder = SimOptions { sensor: SensorKind::Folder, ..quick() };
+    assert!(SimCell::start(&folder).expect_err("no protocol").to_string().contains("watched folder"));
+}
+
+#[test]
 fn the_command_serves_for_a_while_and_names_a_port_that_is_taken() {
     let run = |offset: u16| {
         let offset = offset.to_string();
@@ -543,7 +548,7 @@ fn faults_of_the_cell_do_what_they_say() {
 
 #[test]
 fn profiles_are_counted_remembered_and_forgotten() {
-    let cell = SimCell::start(&quick()).expect("free ports");
+    let cell = SimCell::start(&unhurried()).expect("free ports");
     let mut client = connect(cell.sensor_setup.endpoint.port);
     let mut get = |position: u8, number: u32, count: u8, erase: u8| {
         let mut request = hex("20000000 0100f000 00000000 14000000 42000000 00000000");
@@ -557,7 +562,7 @@ fn profiles_are_counted_remembered_and_forgotten() {
         let counts: Vec<u32> = (0..usize::from(reply[40])).map(|idx| word(64 + idx * 2028 + 4)).collect();
         (word(28), word(32), word(36), counts)
     };
-    sleep(Duration::from_millis(10));
+    sleep(Duration::from_millis(60));
     let (newest, _, first, counts) = get(0, 0, 3, 0);
     assert_eq!((first, counts.len()), (newest - 2, 3));
     // The first profile of all has number 0 and count 1.

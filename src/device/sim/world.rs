@@ -17,8 +17,9 @@ use super::layout::Layout;
 use super::motion::{Motion, Speed, Way};
 use super::{SimOptions, SimTruth};
 
-/// Profiles a second of the cell's own clock.
-const TRIGGERS_PER_S: f64 = 100.0;
+/// Profiles a second of the cell's own clock. Faster than clients ask: one that reads and forgets, or two of them, would
+/// else be told most of the time that there is none.
+const TRIGGERS_PER_S: f64 = 1000.0;
 /// Motions that are remembered, for profiles that were taken before the last one.
 const MAX_MOTIONS: usize = 16;
 /// Where the ball is pushed by [`Fault::BallMoved`], mm.
@@ -273,7 +274,6 @@ impl World {
         }
     }
 
-    /// Sends the arm off from where it is, and says after how long, in real time, it will have arrived.
     /// Where the flange is at joint angles as the controller shows them, degrees.
     #[must_use]
     pub fn flange_at(&self, shown_deg: [f64; 6]) -> Rigid {
@@ -281,6 +281,7 @@ impl World {
         chain.base_from_flange(&chain.joints_from_shown_deg(shown_deg))
     }
 
+    /// Sends the arm off from where it is, and says after how long, in real time, it will have arrived.
     ///
     /// # Errors
     /// [`MotionError`]; the arm goes on with what it did before.

@@ -108,11 +108,11 @@ fn answer(world: &World, request: &Request) -> Result<Vec<u8>, u8> {
 
 /// The settings do not change: 0 stands for a continuous trigger, batch off, and so on.
 fn setting(wanted: SettingRequest) -> Vec<u8> {
-    /// Within the triggers of a program; 3 is [`TRIGGERS_PER_S`] of 100.
+    /// Category and item within a program; 6 is 1 kHz, as the world has it.
     const SAMPLING: [u8; 2] = [0, 2];
-    const SAMPLING_100_HZ: u8 = 3;
+    const SAMPLING_1_KHZ: u8 = 6;
     let is_sampling = wanted.kind >= SettingRequest::FIRST_PROGRAM && [wanted.category, wanted.item] == SAMPLING;
-    vec![if is_sampling { SAMPLING_100_HZ } else { 0 }, 0, 0, 0]
+    vec![if is_sampling { SAMPLING_1_KHZ } else { 0 }, 0, 0, 0]
 }
 
 /// Begin and end of a batch.
