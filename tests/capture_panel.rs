@@ -186,7 +186,7 @@ fn every_button_asks_for_exactly_its_command() {
     let running = CellView { run: Some(RUN), activity: Activity::Settling, ..armed() };
     let paused = CellView { run: Some(RunView { is_paused: true, ..RUN }), ..armed() };
     let replaying = CellView { replay: Some(ReplayView { station_idx: 0, capture_idx: 2, is_over: false }), ..armed() };
-    for (view, name, command) in [
+    for (view, name, command) in vec![
         (armed(), words::FIND, CellCommand::FindLargestArc),
         (armed(), words::CAPTURE, CellCommand::CaptureStation),
         (armed(), words::PROPOSE_NAME, CellCommand::ProposeStation),
@@ -270,7 +270,7 @@ fn states_are_told_in_words() {
     let refusal = MotionRefusal::TooFar { found_mm: 512.0, max_mm: 400.0 };
     let no_arc = LiveProfile { arc: Err(ArcRefusal::TooFewPoints { found: 3, needed: 20 }), ..live(13.5) };
     let reason = ArcRefusal::TooFewPoints { found: 3, needed: 20 }.to_string();
-    let never_still = RoutineEnd::NeverStill { moved_mm: 0.4 };
+    let never_still = RoutineEnd::NeverStill { moved_mm: Some(0.4) };
     for (view, sentence) in [
         (connected(not_remote), "turn the key to AUTO".to_owned()),
         (CellView { robot: page, ..connected(Readiness::Ready) }, words::COARSE_POSES.to_owned()),

@@ -20,7 +20,7 @@ use handeye::scene::Random;
 use handeye::session::{Session, Target};
 
 /// All deadlines of one routine together, on a machine that does other things as well. A routine that takes longer hangs.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_mins(1);
 const TIME_SCALE: f64 = 20.0;
 /// Longer than the simulated cell's late answers take.
 const REQUEST: Duration = Duration::from_millis(600);
@@ -35,18 +35,7 @@ impl Cell {
     fn start(options: &SimOptions, direction: f64, request: Duration) -> Self {
         let options = SimOptions { time_scale: TIME_SCALE, ..options.clone() };
         let sim = SimCell::start(&options).expect("ports are free");
-        let (sender, woken) = sync_channel(64);
-        let wake = move || {
-            sender.try_send(()).ok();
-        };
-        let mut workbench = Workbench::new(Arc::new(wake));
-        workbench.set_cell_deadlines(Deadlines {
-            connect: Duration::from_secs(2),
-            request,
-            stop: Duration::from_millis(500),
-            profile: Duration::from_millis(500),
-            beyond_move: Duration::from_secs(1),
-        });
+        let (mut workbench, woken) = workbench_with_short_deadlines(request);
         let mut session = Session::new(Target::ball(sim.truth.radius_mm));
         session.sensor.profile_std_mm = Some(sim.truth.profile_std_mm);
         workbench.open_session(session, None);
@@ -123,6 +112,22 @@ impl Cell {
         // Noise is 0.02 mm or so. A robot under way makes 10 mm/s, times the scale of time.
         assert!(moved_mm < 0.5, "{what}: moved by {moved_mm} mm");
     }
+}
+
+fn workbench_with_short_deadlines(request: Duration) -> (Workbench, Receiver<()>) {
+    let (sender, woken) = sync_channel(64);
+    let wake = move || {
+        sender.try_send(()).ok();
+    };
+    let mut workbench = Workbench::new(Arc::new(wake));
+    workbench.set_cell_deadlines(Deadlines {
+        connect: Duration::from_secs(2),
+        request,
+        stop: Duration::from_millis(500),
+        profile: Duration::from_millis(500),
+        beyond_move: Duration::from_secs(1),
+    });
+    (workbench, woken)
 }
 
 /// What to call an end in a list.
@@ -263,6 +268,30 @@ fn each_fault_at_each_phase_ends_in_its_time_and_in_its_name() {
     report(&ends, start);
 }
 
+#[test]
+fn a_program_that_ends_in_the_middle_of_a_move_stops_the_robot() {
+    for robot in [RobotKind::FanucMappdk, RobotKind::UniversalRobots, RobotKind::Bridge] {
+        let options = SimOptions { seed: 12, robot, ..SimOptions::default() };
+        let mut cell = Cell::start(&options, 1.0, REQUEST);
+        cell.arm();
+        let mut settings = cell.view().settings;
+        // So slow that the first step would take some seconds.
+        settings.limits.search_speed_mm_s = 1.0 / TIME_SCALE;
+        settings.search.step_mm = 3.0;
+        settings.search.coarse_step_mm = 3.0;
+        cell.tell(CellCommand::SetSettings(Box::new(settings)));
+        cell.tell(CellCommand::FindLargestArc);
+        let is_moving = |cell: &Cell| cell.view().search.is_some() && cell.view().activity == Activity::Moving;
+        assert!(cell.becomes(PATIENCE, is_moving), "{robot:?}: {:?}", cell.view());
+        let (workbench, woken) = workbench_with_short_deadlines(REQUEST);
+        drop(std::mem::replace(&mut cell.workbench, workbench));
+        cell.woken = woken;
+        cell.workbench.open_session(Session::new(Target::ball(15.0)), None);
+        cell.tell(CellCommand::ConnectRobot(cell.sim.robot_setup.clone()));
+        cell.check_robot_stands(&format!("{robot:?}"));
+    }
+}
+
 /// Faults of any kind at any time, one or two of them.
 fn random_faults(seed: u64) -> Vec<FaultSpec> {
     let mut random = Random::new(seed, 5);
@@ -288,7 +317,7 @@ fn run_schedule(seed: u64) -> String {
     let faults = random_faults(seed);
     let what = format!("schedule {seed}: {faults:?}");
     let robot = [RobotKind::FanucMappdk, RobotKind::UniversalRobots, RobotKind::Bridge][(seed % 3) as usize];
-    let sensor = if seed % 2 == 0 { SensorKind::KeyenceLjv } else { SensorKind::Bridge };
+    let sensor = if seed.is_multiple_of(2) { SensorKind::KeyenceLjv } else { SensorKind::Bridge };
     let mut cell = Cell::start(&SimOptions { seed, robot, sensor, ..SimOptions::default() }, 1.0, REQUEST);
     cell.arm();
     for fault in faults {

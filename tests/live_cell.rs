@@ -15,7 +15,7 @@ use handeye::device::{LinkState, MotionRefusal, RobotKind, RoutineEnd, SearchPha
 use handeye::session::{Edit, Row, Session, Target};
 
 /// Long past anything that is waited for here, on a slow machine as well.
-const PATIENCE: Duration = Duration::from_secs(120);
+const PATIENCE: Duration = Duration::from_mins(2);
 /// Fast enough for whole runs.
 const FAST: f64 = 50.0;
 /// Slow enough for something to happen during a move.
@@ -206,7 +206,8 @@ fn a_controller_that_is_not_in_remote_mode_is_not_armed() {
 
 #[test]
 fn a_stop_a_disarming_a_disconnection_and_a_closed_document_each_stop_the_robot() {
-    let ways: [(&str, fn(&mut Bench)); 4] = [
+    type Way = (&'static str, fn(&mut Bench));
+    let ways: [Way; 4] = [
         ("stop", |bench| bench.cell(CellCommand::Stop)),
         ("disarm", |bench| bench.cell(CellCommand::Arm(false))),
         ("close", |bench| bench.workbench.apply(Command::CloseDocument)),

@@ -30,6 +30,9 @@ struct State {
     ignores_programs: bool,
     /// Nothing but texts are streamed, as many as the connection takes.
     is_flooding: bool,
+    /// The program under way waits.
+    is_held_up: bool,
+    is_dashboard_silent: bool,
     robot_mode: i32,
     safety_mode: i32,
     program: Option<Program>,
@@ -49,6 +52,8 @@ impl Fake {
             is_remote: Some(true),
             ignores_programs: false,
             is_flooding: false,
+            is_held_up: false,
+            is_dashboard_silent: false,
             robot_mode: 7,
             safety_mode: 1,
             program: None,
@@ -79,6 +84,9 @@ impl Fake {
         let greeting = Act::Send(format!("{GREETING}\n").into_bytes());
         serve(dashboard, greeting, line, move |line| {
             assert_eq!(Question::parse(&String::from_utf8_lossy(line)), Question::IsInRemoteControl);
+            if fake.state().is_dashboard_silent {
+                return Act::Silence;
+            }
             let unknown = "could not understand: 'is in remote control'\n".to_owned();
             Act::Send(fake.state().is_remote.map_or(unknown, encode_remote_control).into_bytes())
         });
@@ -170,13 +178,18 @@ impl Fake {
 
     fn value(&self, name: &str) -> Option<Value> {
         let state = self.state();
-        let is_moving = state.program.is_some();
+        let has_program = state.program.is_some();
+        let is_moving = has_program && !state.is_held_up;
         match name {
             "actual_TCP_pose" => Some(Value::Vector6(UrPose::from_pose(&state.base_from_tcp).0)),
             "actual_TCP_speed" => Some(Value::Vector6([0.0, if is_moving { 0.01 } else { 0.0 }, 0.0, 0.0, 0.0, 0.0])),
             "robot_mode" => Some(Value::I32(state.robot_mode)),
             "safety_mode" => Some(Value::I32(state.safety_mode)),
-            "runtime_state" => Some(Value::U32(if is_moving { 2 } else { 1 })),
+            "runtime_state" => Some(Value::U32(match (has_program, is_moving) {
+                (false, _) => 1,
+                (true, true) => 2,
+                (true, false) => 4,
+            })),
             "output_int_register_24" => Some(Value::I32(state.mark)),
             "tcp_offset" if state.knows_offset => Some(Value::Vector6(OFFSET.0)),
             _ => None,
@@ -347,6 +360,44 @@ fn in_local_control_a_stop_is_no_more_than_a_look() {
     fake.state().is_remote = Some(false);
     fake.state().ignores_programs = true;
     robot_at(fake.start()).stop(soon()).expect("it stands");
+}
+
+#[test]
+fn where_nobody_tells_of_local_control_a_stop_is_obeyed_if_no_program_runs() {
+    let fake = Fake::new(start_pose());
+    fake.state().is_remote = None;
+    fake.state().ignores_programs = true;
+    robot_at(fake.start()).stop(Instant::now() + Duration::from_secs(2)).expect("it stands, and no program runs");
+}
+
+#[test]
+fn a_program_that_is_held_up_is_not_stopped() {
+    let fake = Fake::new(start_pose());
+    let mut robot = robot_at(fake.start());
+    robot.start_move(&linear(shifted(50.0), 10.0), soon()).expect("taken");
+    wait_until(|| fake.state().program.is_some());
+    {
+        let mut state = fake.state();
+        (state.safety_mode, state.is_held_up, state.ignores_programs) = (5, true, true);
+    }
+    let error = robot.stop(Instant::now() + Duration::from_secs(1)).expect_err("it would go on after a reset");
+    assert!(matches!(error, DeviceError::NotReady { .. }) && error.leaves_connection_usable(), "{error:?}");
+    let text = error.to_string();
+    assert!(text.contains("safeguard stop") && text.contains("stop the program"), "{text}");
+    fake.state().program = None;
+    robot.stop(soon()).expect("somebody ended the program");
+}
+
+#[test]
+fn a_dashboard_that_was_late_once_is_asked_again() {
+    let fake = Fake::new(start_pose());
+    let mut robot = robot_at(fake.start());
+    let mut readiness =
+        || robot.report(Instant::now() + Duration::from_millis(500)).ok().map(|report| report.readiness);
+    fake.state().is_dashboard_silent = true;
+    wait_until(|| readiness() == Some(Readiness::Unknown));
+    fake.state().is_dashboard_silent = false;
+    wait_until(|| readiness() == Some(Readiness::Ready));
 }
 
 #[test]

@@ -537,7 +537,10 @@ pub fn routine_end(end: &RoutineEnd) -> (bool, String) {
         RoutineEnd::Done => (true, "Captured.".to_owned()),
         RoutineEnd::Searched(end) => (end.is_found(), sentence(&end.to_string())),
         RoutineEnd::NotAllowed(refusal) => (false, sentence(&refusal.to_string())),
-        RoutineEnd::NeverStill { moved_mm } => (
+        RoutineEnd::NeverStill { moved_mm: None } => {
+            (false, "The robot never stood still, as its controller says. Wait longer after a move.".to_owned())
+        }
+        RoutineEnd::NeverStill { moved_mm: Some(moved_mm) } => (
             false,
             format!(
                 "The robot never stood still: {moved_mm:.3} mm between two poses. Wait longer after a move, or allow more."
@@ -549,6 +552,9 @@ pub fn routine_end(end: &RoutineEnd) -> (bool, String) {
                 "No profile came after the move (trigger count stays at {trigger_count}). Check the profiler's trigger."
             ),
         ),
+        RoutineEnd::Failed { error, robot_stopped: Some(true) } => {
+            (false, format!("{} – no move is under way.", sentence(&error.to_string())))
+        }
         RoutineEnd::Failed { error, robot_stopped } => {
             (false, format!("{} – {}.", sentence(&error.to_string()), robot(*robot_stopped)))
         }

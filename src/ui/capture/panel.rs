@@ -23,6 +23,8 @@ use super::{connection, live, machine, settings, strip, work};
 const LEFT_WIDTH: f32 = 304.0;
 /// The least of it where the window is narrow.
 const LEAST_LEFT_WIDTH: f32 = 264.0;
+/// Room for a scroll bar beside a column, points.
+const BAR_WIDTH: f32 = 9.0;
 /// The least height of the plots; below, the column scrolls.
 const LEAST_PLOT_HEIGHT: f32 = 284.0;
 
@@ -124,8 +126,9 @@ pub fn show_view(
 
 /// A column that scrolls by itself; the bar gets the gap beside it, so that it covers nothing.
 fn column(ui: &mut Ui, rect: Rect, name: &str, body: impl FnOnce(&mut Ui)) {
-    let mut inside = ui.new_child(UiBuilder::new().max_rect(rect.with_max_x(rect.right() + theme::GAP)));
-    inside.set_clip_rect(rect.with_max_x(rect.right() + theme::GAP).intersect(ui.clip_rect()));
+    let with_bar = rect.with_max_x(rect.right() + BAR_WIDTH);
+    let mut inside = ui.new_child(UiBuilder::new().max_rect(with_bar));
+    inside.set_clip_rect(with_bar.intersect(ui.clip_rect()));
     ScrollArea::vertical().id_salt(name).auto_shrink([false, false]).show(&mut inside, |ui| {
         ui.spacing_mut().item_spacing.y = theme::GAP;
         ui.set_width(rect.width());

@@ -1,9 +1,9 @@
 //! What is done with the cell: this station, the next one, a whole run, and the replay of a session.
 
-use egui::{Align, DragValue, Frame, Label, Layout, Margin, ProgressBar, RichText, Ui, UiBuilder, vec2};
+use egui::{Align, DragValue, Frame, Label, Layout, Margin, ProgressBar, Ui, UiBuilder, vec2};
 
 use crate::app::cell::{CellCommand, Proposal, StationRoutine};
-use crate::device::RoutineEnd;
+use crate::device::{MotionRefusal, RoutineEnd};
 use crate::text::capture as words;
 use crate::ui::theme;
 use crate::ui::widgets::{card_with_height, fixed};
@@ -149,13 +149,11 @@ fn proposed(ui: &mut Ui, desk: &Desk<'_>, proposal: &Proposal) {
     let way = words::way(&fixed(proposal.distance_mm, 0), &fixed(proposal.turn_deg, 0));
     ui.label(theme::dim(ui, way));
     match &proposal.refusal {
-        Some(refusal) => {
-            let color = theme::palette(ui).bad;
-            ui.add(Label::new(RichText::new(format!("✖ {refusal}")).color(color)).wrap());
-        }
-        None => {
+        // Of the arm switch the band speaks already.
+        None | Some(MotionRefusal::NotArmed) => {
             ui.add(Label::new(&proposal.reason).wrap());
         }
+        Some(refusal) => remark(ui, "✖", &refusal.to_string(), theme::palette(ui).bad),
     }
 }
 

@@ -1,7 +1,7 @@
 //! A run over several stations: measure where the robot stands, then propose, go, measure, and so on.
 
 use crate::app::cell::{Activity, RunView};
-use crate::device::{MotionRefusal, RoutineEnd};
+use crate::device::{DeviceError, MotionRefusal, RoutineEnd};
 use crate::text::cell as words;
 
 use super::super::{NoticeKind, Workbench};
@@ -96,6 +96,8 @@ impl Workbench {
         let is_complete = num_done >= run.num_stations;
         self.show_run();
         match end {
+            // The arm came to its end during a search: elsewhere it may not.
+            RoutineEnd::Failed { error: DeviceError::Refused { .. }, .. } if num_in_a_row < MOST_FAILED_IN_A_ROW => {}
             // What happened is in the notice before.
             RoutineEnd::Failed { .. } => self.end_run(Some(words::DEVICE_FAILED.to_owned())),
             RoutineEnd::Stopped { .. } => self.end_run(Some(words::STOPPED.to_owned())),
@@ -155,7 +157,11 @@ impl Workbench {
         }
     }
 
+    /// A proposal was accepted, which ends a pause as well.
     pub(super) fn run_is_measuring(&mut self) {
+        if let Some(run) = &mut self.cell.run {
+            run.is_paused = false;
+        }
         self.set_stage(Stage::Measuring);
     }
 
