@@ -28,6 +28,10 @@ struct State {
     /// What the dashboard answers; `None`: it does not know the question.
     is_remote: Option<bool>,
     ignores_programs: bool,
+    /// Nothing but texts are streamed, as many as the connection takes.
+    is_flooding: bool,
+    /// The program under way waits.
+    is_held_up: bool,
     is_dashboard_silent: bool,
     robot_mode: i32,
     safety_mode: i32,
@@ -47,6 +51,8 @@ impl Fake {
             knows_offset: true,
             is_remote: Some(true),
             ignores_programs: false,
+            is_flooding: false,
+            is_held_up: false,
             is_dashboard_silent: false,
             robot_mode: 7,
             safety_mode: 1,
@@ -158,11 +164,15 @@ impl Fake {
             let values: Vec<Value> = names.iter().filter_map(|name| self.value(name)).collect();
             let packet = ServerPacket::Data { recipe_id: 3, values: rtde::encode_values(&values) };
             let text = TextMessage { text: "hello".to_owned(), source: "test".to_owned(), level: 3 };
-            let bytes = [packet.encode(), ServerPacket::Message(text).encode()].concat();
+            let text = ServerPacket::Message(text).encode();
+            let is_flooding = self.state().is_flooding;
+            let bytes = if is_flooding { text.repeat(4096) } else { [packet.encode(), text].concat() };
             if stream.write_all(&bytes).is_err() {
                 return;
             }
-            thread::sleep(Duration::from_millis(1));
+            if !is_flooding {
+                thread::sleep(Duration::from_millis(1));
+            }
         }
     }
 
@@ -321,6 +331,16 @@ fn states_without_motion_are_named_with_a_remedy() {
     fake.state().is_remote = None;
     let mut robot = robot_at(fake.start());
     assert_eq!(robot.report(soon()).expect("a state").readiness, Readiness::Unknown);
+}
+
+#[test]
+fn a_flood_of_texts_has_an_end_too() {
+    let fake = Fake::new(start_pose());
+    let mut robot = robot_at(fake.start());
+    fake.state().is_flooding = true;
+    // The last states from before it may still come.
+    while robot.report(Instant::now() + Duration::from_millis(200)).is_ok() {}
+    expect_timeout(|deadline| robot.report(deadline));
 }
 
 #[test]
