@@ -13,6 +13,9 @@ pub const NOT_A_BALL: &str =
     "nothing was captured: the open session's target is no ball. Begin a session for a ball, then capture again";
 /// One thing at a time.
 pub const BUSY: &str = "the cell is at work: stop it first, or wait until it has ended";
+/// What holds for a routine holds to its end.
+pub const SETTINGS_IN_USE: &str =
+    "the settings of motion and captures stay as they are while the robot is at work: stop it, then change them";
 /// There is no robot to ask.
 pub const NO_ROBOT: &str = "no robot is connected: connect one first";
 /// There is no profiler to ask.

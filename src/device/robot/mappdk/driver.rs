@@ -18,6 +18,8 @@ const RESOLUTION_MM: f64 = 0.001;
 const ACCELERATION_PERCENT: u16 = 50;
 /// How long one look at a move waits for its end; short, for the caller has to look at other things too.
 const LOOK: Duration = Duration::from_millis(5);
+/// What the server answers to a target that the arm cannot get to; it looks before it moves.
+const NOT_REACHABLE: &str = "position-is-not-reachable";
 /// Columns of a value hold six digits before the point.
 const MAX_VALUE: f64 = 999_999.0;
 
@@ -121,7 +123,7 @@ impl RobotDriver for MappdkRobot {
         }
         let Xyzwpr(values) = Xyzwpr::from_pose(&motion.base_from_flange);
         if !values.iter().all(|value| value.abs() <= MAX_VALUE) {
-            return Err(refused("movep", "position-is-not-reachable"));
+            return Err(refused("movep", NOT_REACHABLE));
         }
         let start = ask_pose(&mut self.commands, deadline)?;
         self.motion = Some(Underway {
@@ -183,10 +185,16 @@ fn success(request: &str, reply: &Reply) -> Result<(), DeviceError> {
 }
 
 fn refused(request: &str, message: &str) -> DeviceError {
+    if message == NOT_REACHABLE {
+        return DeviceError::OutOfReach {
+            device: DEVICE,
+            request: request.to_owned(),
+            found: message.to_owned(),
+            remedy: "choose a pose nearer to the robot, or turn the wrist less; the arm keeps its configuration during a move"
+                .to_owned(),
+        };
+    }
     let remedy = match message {
-        "position-is-not-reachable" => {
-            "choose a pose nearer to the robot, or turn the wrist less; the arm keeps its configuration during a move"
-        }
         "PR[81]-was-not-set" => "free position register 81 for MAPPDK; it must not be locked by another program",
         "R[81]-was-not-set" | "R[82]-was-not-set" | "R[83]-was-not-set" => "free the registers 81 to 83 for MAPPDK",
         "cannot-convert-joint-vals" | "error-in-joint-values" => "check that robot and MAPPDK have as many axes",
