@@ -30,8 +30,6 @@ struct State {
     ignores_programs: bool,
     /// Nothing but texts are streamed, as many as the connection takes.
     is_flooding: bool,
-    /// The program under way waits.
-    is_held_up: bool,
     is_dashboard_silent: bool,
     robot_mode: i32,
     safety_mode: i32,
@@ -52,7 +50,6 @@ impl Fake {
             is_remote: Some(true),
             ignores_programs: false,
             is_flooding: false,
-            is_held_up: false,
             is_dashboard_silent: false,
             robot_mode: 7,
             safety_mode: 1,
