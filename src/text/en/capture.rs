@@ -142,7 +142,11 @@ pub const fn sensor_kind_hint(kind: SensorKind) -> &'static str {
 /// When a broken link is tried again.
 #[must_use]
 pub fn again_in(wait: Duration) -> String {
-    format!("Tried again in {} s.", wait.as_secs_f64().ceil())
+    if wait.is_zero() {
+        "Tried again now.".to_owned()
+    } else {
+        format!("Tried again in {} s.", wait.as_secs_f64().ceil())
+    }
 }
 /// A broken link that only a person can mend.
 pub const NOT_AGAIN: &str = "Mend it, then connect again.";
