@@ -93,7 +93,8 @@ impl UrRobot {
         if self.dashboard_tried_at.elapsed() >= REMOTE_AGE {
             self.dashboard = match self.dashboard.take() {
                 Some(mut dashboard) => dashboard.ask(deadline).is_ok().then_some(dashboard),
-                None => Dashboard::connect(&self.endpoint, deadline.min(Instant::now() + DASHBOARD_PATIENCE)).ok(),
+                None => Dashboard::connect(&self.endpoint, deadline).ok(),
+            let deadline = deadline.min(Instant::now() + DASHBOARD_PATIENCE);
             };
             self.dashboard_tried_at = Instant::now();
         }
