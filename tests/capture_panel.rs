@@ -310,7 +310,7 @@ fn states_are_told_in_words() {
     let refusal = MotionRefusal::TooFar { found_mm: 512.0, max_mm: 400.0 };
     let no_arc = LiveProfile { arc: Err(ArcRefusal::TooFewPoints { found: 3, needed: 20 }), ..live(13.5) };
     let reason = ArcRefusal::TooFewPoints { found: 3, needed: 20 }.to_string();
-    let never_still = RoutineEnd::NeverStill { moved_mm: 0.4 };
+    let never_still = RoutineEnd::NeverStill { moved_mm: Some(0.4) };
     for (view, sentence) in [
         (connected(not_remote), "turn the key to AUTO".to_owned()),
         (CellView { robot: page, ..connected(Readiness::Ready) }, words::COARSE_POSES.to_owned()),

@@ -39,6 +39,8 @@ pub(super) enum Fault {
     SensorSilent,
     /// The profiler gives the same profile again and again.
     SensorStale,
+    /// Both answer, and refuse to show anything.
+    LooksRefused,
     /// Nobody answers at either address.
     NoConnection,
 }
@@ -58,6 +60,12 @@ pub(super) struct World {
     pub num_stops: u32,
     pub num_connections: u32,
     pub takes_stop: bool,
+    /// The robot's driver only reads.
+    pub is_read_only: bool,
+    /// The robot says that it moves, wherever it stands.
+    pub says_it_moves: bool,
+    /// Happens once, while the robot is asked for its pose.
+    pub during_report: Option<Box<dyn FnOnce() + Send>>,
     scene: Scene,
     noise: Random,
 }
@@ -102,6 +110,9 @@ impl FakeCell {
             num_stops: 0,
             num_connections: 0,
             takes_stop: true,
+            is_read_only: false,
+            says_it_moves: false,
+            during_report: None,
             scene,
             noise: Random::new(7, 1),
         })))
@@ -163,6 +174,15 @@ fn closed(device: &'static str) -> DeviceError {
     DeviceError::Closed { device, request: "a test".to_owned() }
 }
 
+fn refused(device: &'static str) -> DeviceError {
+    DeviceError::Refused {
+        device,
+        request: "a test".to_owned(),
+        found: "as the test wants it".to_owned(),
+        remedy: "end the test".to_owned(),
+    }
+}
+
 fn silent(device: &'static str, deadline: Instant) -> DeviceError {
     std::thread::sleep(deadline.saturating_duration_since(Instant::now()));
     DeviceError::Timeout { device, request: "a test".to_owned(), waited: Duration::from_millis(100) }
@@ -189,14 +209,21 @@ impl RobotDriver for FakeRobot {
 
     fn report(&mut self, deadline: Instant) -> Result<RobotReport, DeviceError> {
         self.meet_fault(deadline)?;
+        let happens = self.0.world().during_report.take();
+        if let Some(happens) = happens {
+            happens();
+        }
         let mut world = self.0.world();
+        if world.fault() == Fault::LooksRefused {
+            return Err(refused("Robot"));
+        }
         if world.fault() == Fault::RobotDrifts {
             world.pose = Transform::from_rigid(Rigid::translation(0.1, 0.0, 0.0) * world.pose.rigid());
         }
         Ok(RobotReport {
             base_from_flange: world.pose,
             joints_deg: Vec::new(),
-            is_moving: Some(world.target.is_some()),
+            is_moving: Some(world.says_it_moves || world.target.is_some()),
             readiness: world.readiness.clone(),
             tool: String::new(),
             resolution_mm: 0.001,
@@ -209,12 +236,7 @@ impl RobotDriver for FakeRobot {
         self.meet_fault(deadline)?;
         let mut world = self.0.world();
         if world.fault() == Fault::MoveRefused {
-            return Err(DeviceError::Refused {
-                device: "Robot",
-                request: "a move".to_owned(),
-                found: "position is not reachable".to_owned(),
-                remedy: "choose another pose".to_owned(),
-            });
+            return Err(refused("Robot"));
         }
         world.target = Some(motion.base_from_flange);
         world.polls_left = world.polls_a_move;
@@ -242,9 +264,15 @@ impl RobotDriver for FakeRobot {
     fn stop(&mut self, deadline: Instant) -> Result<(), DeviceError> {
         self.meet_fault(deadline)?;
         let mut world = self.0.world();
+        if world.is_read_only {
+            return Err(DeviceError::CannotMove { device: "Robot" });
+        }
+        if !world.takes_stop {
+            return Err(refused("Robot"));
+        }
         world.num_stops += 1;
         world.target = None;
-        if world.takes_stop { Ok(()) } else { Err(closed("Robot")) }
+        Ok(())
     }
 }
 
@@ -270,6 +298,9 @@ impl SensorDriver for FakeSensor {
         self.meet_fault(deadline)?;
         let mut world = self.0.world();
         let world = &mut *world;
+        if world.fault() == Fault::LooksRefused {
+            return Err(refused("Profiler"));
+        }
         if world.fault() != Fault::SensorStale {
             world.trigger_count = world.trigger_count.wrapping_add(1);
         }

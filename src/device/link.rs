@@ -14,7 +14,7 @@ pub enum LinkState {
     Connecting,
     /// Made.
     Ready,
-    /// Broken; made anew after a while.
+    /// Broken, and made anew after a while; or it stands, and the device refuses to show anything over it.
     Failed {
         /// What happened, and what to do.
         error: DeviceError,
@@ -33,7 +33,7 @@ const PROVEN_AFTER: Duration = Duration::from_secs(5);
 #[derive(Clone, Debug)]
 enum Stage {
     Connecting,
-    Ready { since: Instant },
+    Ready { since: Instant, refusal: Option<DeviceError> },
     Failed { error: DeviceError, retry_at: Option<Instant> },
 }
 
@@ -59,13 +59,13 @@ impl Link {
 
     /// The attempt succeeded.
     pub fn on_connected(&mut self, now: Instant) {
-        self.stage = Stage::Ready { since: now };
+        self.stage = Stage::Ready { since: now, refusal: None };
         self.num_connections += 1;
     }
 
     /// The attempt failed, or the connection broke.
     pub fn on_failed(&mut self, error: DeviceError, now: Instant) {
-        if let Stage::Ready { since } = self.stage
+        if let Stage::Ready { since, .. } = self.stage
             && now.saturating_duration_since(since) >= PROVEN_AFTER
         {
             self.num_failures = 0;
@@ -73,6 +73,22 @@ impl Link {
         self.num_failures = self.num_failures.saturating_add(1);
         let retry_at = error.may_pass_by_itself().then(|| now + wait_after(self.num_failures));
         self.stage = Stage::Failed { error, retry_at };
+    }
+
+    /// The device was looked at over a connection that stands: with what it refused, if it did.
+    pub fn on_looked(&mut self, found: Option<DeviceError>) {
+        if let Stage::Ready { refusal, .. } = &mut self.stage {
+            *refusal = found;
+        }
+    }
+
+    /// What the device refused when it was looked at last.
+    #[must_use]
+    pub const fn refusal(&self) -> Option<&DeviceError> {
+        match &self.stage {
+            Stage::Ready { refusal, .. } => refusal.as_ref(),
+            Stage::Connecting | Stage::Failed { .. } => None,
+        }
     }
 
     /// When the next attempt is to begin; `None` if there is to be none for now.
@@ -84,9 +100,9 @@ impl Link {
         }
     }
 
-    /// Whether the connection is made.
+    /// Whether the connection is made, whatever the device answers over it.
     #[must_use]
-    pub const fn is_ready(&self) -> bool {
+    pub const fn is_made(&self) -> bool {
         matches!(self.stage, Stage::Ready { .. })
     }
 
@@ -101,7 +117,11 @@ impl Link {
     pub fn state(&self, now: Instant) -> LinkState {
         match &self.stage {
             Stage::Connecting => LinkState::Connecting,
-            Stage::Ready { .. } => LinkState::Ready,
+            Stage::Ready { refusal: None, .. } => LinkState::Ready,
+            // It is looked at again at once.
+            Stage::Ready { refusal: Some(error), .. } => {
+                LinkState::Failed { error: error.clone(), retry_in: Some(Duration::ZERO) }
+            }
             Stage::Failed { error, retry_at } => LinkState::Failed {
                 error: error.clone(),
                 retry_in: retry_at.map(|retry_at| retry_at.saturating_duration_since(now)),
@@ -182,7 +202,7 @@ mod tests {
         let mut link = Link::default();
         assert_eq!(link.state(now), LinkState::Connecting);
         link.on_connected(now);
-        assert!(link.is_ready());
+        assert!(link.is_made());
         assert_eq!(link.state(now), LinkState::Ready);
         link.on_failed(closed(), now);
         for (later_ms, expected_ms) in [(0, 500), (300, 200), (500, 0), (900, 0)] {

@@ -4,7 +4,7 @@ use std::io::{Read as _, Write as _};
 use std::net::{TcpListener, TcpStream};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use handeye::device::robot::connect;
 use handeye::device::robot::ur::dashboard::{GREETING, Question, encode_remote_control};
@@ -28,6 +28,9 @@ struct State {
     /// What the dashboard answers; `None`: it does not know the question.
     is_remote: Option<bool>,
     ignores_programs: bool,
+    /// Nothing but texts are streamed, as many as the connection takes.
+    is_flooding: bool,
+    is_dashboard_silent: bool,
     robot_mode: i32,
     safety_mode: i32,
     program: Option<Program>,
@@ -46,6 +49,8 @@ impl Fake {
             knows_offset: true,
             is_remote: Some(true),
             ignores_programs: false,
+            is_flooding: false,
+            is_dashboard_silent: false,
             robot_mode: 7,
             safety_mode: 1,
             program: None,
@@ -76,6 +81,9 @@ impl Fake {
         let greeting = Act::Send(format!("{GREETING}\n").into_bytes());
         serve(dashboard, greeting, line, move |line| {
             assert_eq!(Question::parse(&String::from_utf8_lossy(line)), Question::IsInRemoteControl);
+            if fake.state().is_dashboard_silent {
+                return Act::Silence;
+            }
             let unknown = "could not understand: 'is in remote control'\n".to_owned();
             Act::Send(fake.state().is_remote.map_or(unknown, encode_remote_control).into_bytes())
         });
@@ -153,23 +161,33 @@ impl Fake {
             let values: Vec<Value> = names.iter().filter_map(|name| self.value(name)).collect();
             let packet = ServerPacket::Data { recipe_id: 3, values: rtde::encode_values(&values) };
             let text = TextMessage { text: "hello".to_owned(), source: "test".to_owned(), level: 3 };
-            let bytes = [packet.encode(), ServerPacket::Message(text).encode()].concat();
+            let text = ServerPacket::Message(text).encode();
+            let is_flooding = self.state().is_flooding;
+            let bytes = if is_flooding { text.repeat(4096) } else { [packet.encode(), text].concat() };
             if stream.write_all(&bytes).is_err() {
                 return;
             }
-            thread::sleep(Duration::from_millis(1));
+            if !is_flooding {
+                thread::sleep(Duration::from_millis(1));
+            }
         }
     }
 
     fn value(&self, name: &str) -> Option<Value> {
         let state = self.state();
-        let is_moving = state.program.is_some();
+        let has_program = state.program.is_some();
+        // In a safeguard stop a program waits.
+        let is_moving = has_program && state.safety_mode != 5;
         match name {
             "actual_TCP_pose" => Some(Value::Vector6(UrPose::from_pose(&state.base_from_tcp).0)),
             "actual_TCP_speed" => Some(Value::Vector6([0.0, if is_moving { 0.01 } else { 0.0 }, 0.0, 0.0, 0.0, 0.0])),
             "robot_mode" => Some(Value::I32(state.robot_mode)),
             "safety_mode" => Some(Value::I32(state.safety_mode)),
-            "runtime_state" => Some(Value::U32(if is_moving { 2 } else { 1 })),
+            "runtime_state" => Some(Value::U32(match (has_program, is_moving) {
+                (false, _) => 1,
+                (true, true) => 2,
+                (true, false) => 4,
+            })),
             "output_int_register_24" => Some(Value::I32(state.mark)),
             "tcp_offset" if state.knows_offset => Some(Value::Vector6(OFFSET.0)),
             _ => None,
@@ -313,6 +331,16 @@ fn states_without_motion_are_named_with_a_remedy() {
 }
 
 #[test]
+fn a_flood_of_texts_has_an_end_too() {
+    let fake = Fake::new(start_pose());
+    let mut robot = robot_at(fake.start());
+    fake.state().is_flooding = true;
+    // The last states from before it may still come.
+    while robot.report(Instant::now() + Duration::from_millis(200)).is_ok() {}
+    expect_timeout(|deadline| robot.report(deadline));
+}
+
+#[test]
 fn a_program_of_somebody_else_is_not_ended_by_a_move() {
     let fake = Fake::new(start_pose());
     let mut robot = robot_at(fake.start());
@@ -330,6 +358,44 @@ fn in_local_control_a_stop_is_no_more_than_a_look() {
     fake.state().is_remote = Some(false);
     fake.state().ignores_programs = true;
     robot_at(fake.start()).stop(soon()).expect("it stands");
+}
+
+#[test]
+fn where_nobody_tells_of_local_control_a_stop_is_obeyed_if_no_program_runs() {
+    let fake = Fake::new(start_pose());
+    fake.state().is_remote = None;
+    fake.state().ignores_programs = true;
+    robot_at(fake.start()).stop(Instant::now() + Duration::from_secs(2)).expect("it stands, and no program runs");
+}
+
+#[test]
+fn a_program_that_is_held_up_is_not_stopped() {
+    let fake = Fake::new(start_pose());
+    let mut robot = robot_at(fake.start());
+    robot.start_move(&linear(shifted(50.0), 10.0), soon()).expect("taken");
+    wait_until(|| fake.state().program.is_some());
+    {
+        let mut state = fake.state();
+        (state.safety_mode, state.ignores_programs) = (5, true);
+    }
+    let error = robot.stop(Instant::now() + Duration::from_secs(1)).expect_err("it would go on after a reset");
+    assert!(matches!(error, DeviceError::NotReady { .. }) && error.leaves_connection_usable(), "{error:?}");
+    let text = error.to_string();
+    assert!(text.contains("safeguard stop") && text.contains("stop the program"), "{text}");
+    fake.state().program = None;
+    robot.stop(soon()).expect("somebody ended the program");
+}
+
+#[test]
+fn a_dashboard_that_was_late_once_is_asked_again() {
+    let fake = Fake::new(start_pose());
+    let mut robot = robot_at(fake.start());
+    let mut readiness =
+        || robot.report(Instant::now() + Duration::from_millis(500)).ok().map(|report| report.readiness);
+    fake.state().is_dashboard_silent = true;
+    wait_until(|| readiness() == Some(Readiness::Unknown));
+    fake.state().is_dashboard_silent = false;
+    wait_until(|| readiness() == Some(Readiness::Ready));
 }
 
 #[test]

@@ -19,18 +19,15 @@ impl Runner {
     /// Waits until everything is still, and captures; tries again where the robot moved meanwhile.
     pub(super) fn capture(&self, step_mm: Option<f64>) -> Result<StepCapture, Break> {
         let settle = &self.task.settle;
-        let mut moved_mm = 0.0;
+        let mut moved_mm = None;
         for _ in 0..=settle.num_retries {
             self.control.wait(Duration::from_millis(settle.settle_ms.into()))?;
             let before = self.robot.report()?;
             let profiles = self.later_profiles()?;
             let after = self.robot.report()?;
-            match settle.moved_mm(&before.base_from_flange, &after.base_from_flange) {
-                None if after.is_moving != Some(true) => {
-                    return Ok(capture_of(&profiles, after.base_from_flange, step_mm)?);
-                }
-                None => moved_mm = 0.0,
-                Some(found_mm) => moved_mm = found_mm,
+            moved_mm = settle.moved_mm(&before.base_from_flange, &after.base_from_flange);
+            if moved_mm.is_none() && after.is_moving != Some(true) {
+                return Ok(capture_of(&profiles, after.base_from_flange, step_mm)?);
             }
         }
         Err(Break::NeverStill { moved_mm })

@@ -7,6 +7,7 @@ mod run;
 #[cfg(test)]
 mod tests;
 
+use std::cell::Cell;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
@@ -67,19 +68,19 @@ pub enum RoutineEnd {
     NotAllowed(MotionRefusal),
     /// The pose before the profile and that after it differ, again and again.
     NeverStill {
-        /// By how much, mm.
-        moved_mm: f64,
+        /// By how much, mm; `None` where only the controller says that it moves.
+        moved_mm: Option<f64>,
     },
     /// No profile later than the move came in time.
     StaleProfiles {
         /// The trigger count that stayed.
         trigger_count: u32,
     },
-    /// A device failed; the robot was told to stop.
+    /// A device failed; the robot was told to stop if it was sent anywhere.
     Failed {
         /// What happened.
         error: DeviceError,
-        /// Whether the robot took the stop; `None` where it could not be told.
+        /// Whether the robot took the stop, or needed none; `None` where it could not be told.
         robot_stopped: Option<bool>,
     },
     /// Somebody pressed stop.
@@ -136,7 +137,15 @@ impl Routine {
         let control = Control::default();
         // Not bounded: there are a few events a capture, captures are limited, and none may be lost or hold up the robot.
         let (sender, events) = channel();
-        let runner = run::Runner { task, robot, sensor, control: control.clone(), events: sender.clone(), wake };
+        let runner = run::Runner {
+            task,
+            robot,
+            sensor,
+            control: control.clone(),
+            has_moved: Cell::new(false),
+            events: sender.clone(),
+            wake,
+        };
         let spawned = thread::Builder::new().name("routine".to_owned()).spawn(move || runner.run());
         if let Err(error) = spawned {
             let error =

@@ -1,5 +1,6 @@
 //! The thread of a routine.
 
+use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::Sender;
 use std::time::Duration;
@@ -22,6 +23,8 @@ pub(super) struct Runner {
     pub robot: RobotClient,
     pub sensor: SensorClient,
     pub control: Control,
+    /// Whether the robot was sent anywhere.
+    pub has_moved: Cell<bool>,
     pub events: Sender<RoutineEvent>,
     pub wake: Wake,
 }
@@ -31,7 +34,7 @@ pub(super) struct Runner {
 pub(super) enum Break {
     Stop,
     NotAllowed(MotionRefusal),
-    NeverStill { moved_mm: f64 },
+    NeverStill { moved_mm: Option<f64> },
     StaleProfiles { trigger_count: u32 },
     Device(DeviceError),
 }
@@ -80,7 +83,7 @@ impl Runner {
                 RoutineEnd::StaleProfiles { trigger_count }
             }
             Ok(Err(Break::Device(error))) => RoutineEnd::Failed { error, robot_stopped: self.stop_robot() },
-            Ok(Err(Break::Stop)) => RoutineEnd::Stopped { robot_stopped: self.stop_robot() },
+            Ok(Err(Break::Stop)) => RoutineEnd::Stopped { robot_stopped: self.robot.stop_and_wait() },
             Err(_) => broken_down(self.stop_robot()),
         };
         self.tell(RoutineEvent::Ended(end));
@@ -155,15 +158,19 @@ impl Runner {
     fn move_to(&self, target: &Transform<Base, Flange>, speed_mm_s: f64) -> Result<(), Break> {
         self.control.wait_while_paused()?;
         let RobotReport { base_from_flange, readiness, .. } = self.robot.report()?;
+        // Somebody may have wanted a stop while the robot was asked.
+        self.control.wait(Duration::ZERO)?;
         let arming = self.task.arming.ok_or(MotionRefusal::NotArmed)?;
         let motion = arming.check(&readiness, &base_from_flange, target, speed_mm_s)?;
         self.tell(RoutineEvent::Moving { base_from_flange: *target });
         let patience = 3 * duration_of(&motion, &base_from_flange) + self.robot.deadlines().beyond_move;
+        self.has_moved.set(true);
         Ok(self.robot.move_to(motion, patience)?)
     }
 
+    /// A robot that was sent nowhere from here may be at somebody else's program, which is not ours to end.
     fn stop_robot(&self) -> Option<bool> {
-        self.robot.stop_and_wait()
+        if self.has_moved.get() { self.robot.stop_and_wait() } else { Some(true) }
     }
 
     pub(super) fn tell(&self, event: RoutineEvent) {

@@ -17,8 +17,9 @@ use super::layout::Layout;
 use super::motion::{Motion, Speed, Way};
 use super::{SimOptions, SimTruth};
 
-/// Profiles a second of the cell's own clock.
-const TRIGGERS_PER_S: f64 = 100.0;
+/// Profiles a second of the cell's own clock. Faster than clients ask: one that reads and forgets, or two of them, would
+/// else be told most of the time that there is none.
+const TRIGGERS_PER_S: f64 = 1000.0;
 /// Motions that are remembered, for profiles that were taken before the last one.
 const MAX_MOTIONS: usize = 16;
 /// Where the ball is pushed by [`Fault::BallMoved`], mm.
@@ -168,8 +169,16 @@ struct Profiler {
     stale_at: Option<u32>,
     /// The program that is active.
     program: u8,
-    /// The first profile of the high-speed stream that runs.
-    stream_from: Option<u32>,
+    stream: Stream,
+}
+
+/// The high-speed stream that was started last.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stream {
+    /// Which it is: a client that has been served one is not served another's.
+    pub number: u64,
+    /// Its first profile; `None` once it was stopped.
+    pub from: Option<u32>,
 }
 
 /// The arm, the ball, the profiler.
@@ -263,6 +272,13 @@ impl World {
             registers: state.registers,
             time_s,
         }
+    }
+
+    /// Where the flange is at joint angles as the controller shows them, degrees.
+    #[must_use]
+    pub fn flange_at(&self, shown_deg: [f64; 6]) -> Rigid {
+        let chain = &self.layout.chain;
+        chain.base_from_flange(&chain.joints_from_shown_deg(shown_deg))
     }
 
     /// Sends the arm off from where it is, and says after how long, in real time, it will have arrived.
@@ -404,15 +420,24 @@ impl World {
         self.now().0.profiler.program = program;
     }
 
-    /// The first profile of the high-speed stream; `None` while none runs.
+    /// The high-speed stream that was started last.
     #[must_use]
-    pub fn stream_from(&self) -> Option<u32> {
-        self.now().0.profiler.stream_from
+    pub fn stream(&self) -> Stream {
+        self.now().0.profiler.stream
     }
 
-    /// Starts that stream from a profile on, or ends it.
-    pub fn set_stream(&self, from: Option<u32>) {
-        self.now().0.profiler.stream_from = from;
+    /// Starts another from a profile on.
+    pub fn start_stream(&self, from: u32) {
+        let stream = &mut self.now().0.profiler.stream;
+        *stream = Stream { number: stream.number + 1, from: Some(from) };
+    }
+
+    /// Ends the stream of a number, unless another has taken its place.
+    pub fn end_stream(&self, number: u64) {
+        let stream = &mut self.now().0.profiler.stream;
+        if stream.number == number {
+            stream.from = None;
+        }
     }
 
     /// The profile of a count; the same count gives the same profile.

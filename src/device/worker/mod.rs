@@ -82,24 +82,24 @@ trait Duty: Send + 'static {
 
     /// Whether the device may still be doing what it was told.
     fn may_be_moving(&self) -> bool;
+
+    /// What was shown is not so any more.
+    fn hide(&mut self);
 }
 
 /// A worker's thread, from the outside. Dropping it ends the thread.
 #[derive(Debug)]
 struct Hold<Request>(Arc<Post<Request>>);
 
-/// How long a drop waits for a robot on the move to be told to stop: otherwise the program may end before.
-const DROP_WAITS: Duration = Duration::from_millis(500);
-
 impl<Request> Drop for Hold<Request> {
     fn drop(&mut self) {
-        self.0.end(DROP_WAITS);
+        self.0.end();
     }
 }
 
 fn start<D: Duty>(duty: D, connect: Connect<D::Driver>, deadlines: Deadlines, wake: Wake) -> Hold<D::Request> {
     let post = Arc::new(Post::new(D::DEVICE, deadlines, wake));
-    let worker = Worker { duty, connect, post: Arc::clone(&post), owes_stop: false };
+    let worker = Worker { duty, connect, post: Arc::clone(&post) };
     let spawned = thread::Builder::new().name(D::DEVICE.to_lowercase()).spawn(move || worker.run());
     if let Err(error) = spawned {
         let error =
@@ -113,8 +113,6 @@ struct Worker<D: Duty> {
     duty: D,
     connect: Connect<D::Driver>,
     post: Arc<Post<D::Request>>,
-    /// The connection broke while the device may have been moving: the first thing to say over the next one is stop.
-    owes_stop: bool,
 }
 
 impl<D: Duty> Worker<D> {
@@ -125,13 +123,12 @@ impl<D: Duty> Worker<D> {
             let connected = guarded(D::DEVICE, || (self.connect)(deadline));
             let error = match connected {
                 Ok(mut driver) => {
+                    self.duty.hide();
                     self.post.change_link(|link| link.on_connected(Instant::now()));
                     let broken = self.attend(&mut *driver);
                     let Some(error) = broken else { break };
                     // Whatever is left of the connection may still carry a stop.
-                    let stopped = self.duty.may_be_moving().then(|| self.stop(&mut *driver).is_ok());
-                    self.owes_stop = stopped == Some(false);
-                    self.post.note_stopped_by_break(stopped);
+                    self.stop_what_is_left(&mut *driver).ok();
                     // Closing a connection is the driver's code, too.
                     guarded(D::DEVICE, move || {
                         drop(driver);
@@ -150,20 +147,16 @@ impl<D: Duty> Worker<D> {
 
     /// Serves as long as the connection holds; `None` once nobody wants it any more.
     fn attend(&mut self, driver: &mut D::Driver) -> Option<DeviceError> {
-        if std::mem::take(&mut self.owes_stop)
-            && let Err(error) = self.stop(driver)
+        if let Err(error) = self.stop_what_is_left(driver)
             && !error.leaves_connection_usable()
         {
-            self.owes_stop = true;
             return Some(error);
         }
         let mut next_look = Instant::now();
         loop {
-            let outcome = match self.post.next(Some(next_look)) {
+            let outcome = match self.post.next(Some(next_look), self.duty.may_be_moving()) {
                 Next::Over => {
-                    if self.duty.may_be_moving() {
-                        self.stop(driver).ok();
-                    }
+                    self.stop_what_is_left(driver).ok();
                     return None;
                 }
                 Next::Stop(count) => {
@@ -171,14 +164,23 @@ impl<D: Duty> Worker<D> {
                     self.post.note_stopped(count, Some(outcome.is_ok()));
                     outcome
                 }
-                Next::Request(request) => {
-                    let Self { duty, post, .. } = self;
-                    guarded(D::DEVICE, || duty.serve(driver, request, post))
-                }
+                Next::Request(request) => match self.stop_what_is_left(driver) {
+                    Ok(()) => guarded(D::DEVICE, || self.duty.serve(driver, request, &self.post)),
+                    Err(error) => {
+                        D::refuse(request, error.clone());
+                        Err(error)
+                    }
+                },
                 Next::Nothing => {
                     next_look = Instant::now() + D::LOOK_EVERY;
-                    let Self { duty, post, .. } = self;
-                    guarded(D::DEVICE, || duty.look(driver, post))
+                    let outcome = self
+                        .stop_what_is_left(driver)
+                        .and_then(|()| guarded(D::DEVICE, || self.duty.look(driver, &self.post)));
+                    if outcome.is_err() {
+                        self.duty.hide();
+                    }
+                    self.post.note_look(outcome.as_ref().err());
+                    outcome
                 }
             };
             if let Err(error) = outcome
@@ -193,11 +195,19 @@ impl<D: Duty> Worker<D> {
         guarded(D::DEVICE, || self.duty.stop(driver))
     }
 
+    /// A move that broke off, and a stop that was not taken, may have left the robot under way: as long as that is so, it
+    /// is told to stop before anything else is done.
+    fn stop_what_is_left(&mut self, driver: &mut D::Driver) -> Result<(), DeviceError> {
+        let outcome = self.duty.may_be_moving().then(|| self.stop(driver));
+        self.post.note_stopped_unasked(outcome.as_ref().map(Result::is_ok));
+        outcome.unwrap_or(Ok(()))
+    }
+
     /// Waits for the time of the next attempt; whoever asks meanwhile hears why there is no answer.
     fn sit_out(&self, error: &DeviceError) {
         let retry_at = self.post.retry_at();
         loop {
-            match self.post.next(retry_at) {
+            match self.post.next(retry_at, false) {
                 Next::Over | Next::Nothing => return,
                 Next::Stop(count) => self.post.note_stopped_without_connection(count),
                 Next::Request(request) => D::refuse(request, error.clone()),

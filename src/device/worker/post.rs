@@ -26,6 +26,13 @@ pub(super) enum Next<Request> {
     Nothing,
 }
 
+/// When a client was bound: what begins then goes on neither over a later connection nor past a later stop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Binding {
+    connection: u64,
+    num_stops_asked: u64,
+}
+
 #[derive(Debug)]
 struct Inside<Request> {
     requests: VecDeque<Request>,
@@ -33,10 +40,10 @@ struct Inside<Request> {
     num_stops_served: u64,
     /// Whether the device took the last stop; `None` where it could not be told.
     stop_taken: Option<bool>,
-    /// The same of the stop that was tried as the connection broke.
-    stop_taken_at_break: Option<bool>,
-    /// Whether the thread is at a request, such as a move.
-    is_serving: bool,
+    /// The same of the stop that the thread tried of itself.
+    stop_taken_unasked: Option<bool>,
+    /// Whether the thread is at something that may have to be stopped, or stops it.
+    is_at_it: bool,
     is_over: bool,
     is_left: bool,
 }
@@ -74,8 +81,8 @@ impl<Request> Post<Request> {
             num_stops_asked: 0,
             num_stops_served: 0,
             stop_taken: None,
-            stop_taken_at_break: None,
-            is_serving: false,
+            stop_taken_unasked: None,
+            is_at_it: false,
             is_over: false,
             is_left: false,
         };
@@ -91,21 +98,22 @@ impl<Request> Post<Request> {
 
     // What the thread does.
 
-    /// Waits until there is something to do, at most until `until`.
-    pub fn next(&self, until: Option<Instant>) -> Next<Request> {
+    /// Waits until there is something to do, at most until `until`. A stop that was asked for comes even before the end.
+    pub fn next(&self, until: Option<Instant>, may_be_moving: bool) -> Next<Request> {
         let mut inside = lock(&self.board.inside);
         loop {
+            if inside.num_stops_served < inside.num_stops_asked {
+                inside.is_at_it = true;
+                return Next::Stop(inside.num_stops_asked);
+            }
             if inside.is_over {
                 return Next::Over;
             }
-            inside.is_serving = false;
-            if inside.num_stops_served < inside.num_stops_asked {
-                return Next::Stop(inside.num_stops_asked);
-            }
             if let Some(request) = inside.requests.pop_front() {
-                inside.is_serving = true;
+                inside.is_at_it = true;
                 return Next::Request(request);
             }
+            inside.is_at_it = may_be_moving;
             let Some(until) = until else {
                 inside = self.board.changed.wait(inside).unwrap_or_else(PoisonError::into_inner);
                 continue;
@@ -130,19 +138,28 @@ impl<Request> Post<Request> {
         self.change(|inside| {
             inside.num_stops_served = count;
             inside.stop_taken = taken;
-            inside.stop_taken_at_break = None;
+            inside.stop_taken_unasked = None;
         });
     }
 
-    pub fn note_stopped_by_break(&self, taken: Option<bool>) {
-        self.change(|inside| inside.stop_taken_at_break = taken);
+    /// The thread has stopped the device of itself; `None`: there was no need.
+    pub fn note_stopped_unasked(&self, taken: Option<bool>) {
+        lock(&self.board.inside).stop_taken_unasked = taken;
+    }
+
+    /// How the look at the device went.
+    pub fn note_look(&self, refusal: Option<&DeviceError>) {
+        let is_known = lock(&self.link).refusal() == refusal;
+        if !is_known {
+            self.change_link(|link| link.on_looked(refusal.cloned()));
+        }
     }
 
     /// There is no connection to stop by; what is known is how it went as it broke.
     pub fn note_stopped_without_connection(&self, count: u64) {
         self.change(|inside| {
             inside.num_stops_served = count;
-            inside.stop_taken = inside.stop_taken_at_break.filter(|taken| *taken);
+            inside.stop_taken = inside.stop_taken_unasked.filter(|taken| *taken);
         });
     }
 
@@ -152,6 +169,7 @@ impl<Request> Post<Request> {
         self.change(|inside| {
             inside.is_left = true;
             inside.num_stops_served = inside.num_stops_asked;
+            inside.stop_taken = inside.stop_taken_unasked.or(inside.stop_taken);
             std::mem::swap(&mut waiting, &mut inside.requests);
         });
         waiting.into_iter().for_each(refuse);
@@ -189,45 +207,50 @@ impl<Request> Post<Request> {
 
     /// Asks, and waits for the answer until the deadline and a little longer: the thread keeps it, too.
     ///
-    /// Over any other connection than the one given there is no answer.
+    /// Who is bound gets no answer over another connection or after a stop. What still waits when a stop is asked for is
+    /// not done any more.
     pub fn ask<Answer>(
         &self,
         what: &str,
-        connection: Option<u64>,
+        binding: Option<Binding>,
         patience: Duration,
         request: impl FnOnce(SyncSender<Result<Answer, DeviceError>>) -> Request,
     ) -> Result<Answer, DeviceError> {
-        self.need_connection(what, connection)?;
+        self.need_connection(what, binding)?;
         let (sender, receiver): (_, Receiver<Result<Answer, DeviceError>>) = sync_channel(1);
         let timeout = || DeviceError::Timeout { device: self.device, request: what.to_owned(), waited: patience };
-        {
+        let stopped = || DeviceError::Stopped { device: self.device };
+        let num_stops_asked = {
             let mut inside = lock(&self.board.inside);
-            if inside.is_over || inside.is_left {
-                return Err(DeviceError::Stopped { device: self.device });
+            let is_past_stop = binding.is_some_and(|binding| binding.num_stops_asked != inside.num_stops_asked);
+            if inside.is_over || inside.is_left || is_past_stop {
+                return Err(stopped());
             }
             if inside.requests.len() >= MAX_WAITING {
                 return Err(timeout());
             }
             inside.requests.push_back(request(sender));
-        }
+            inside.num_stops_asked
+        };
         self.board.changed.notify_all();
         match receiver.recv_timeout(patience) {
             Ok(answer) => answer,
             Err(RecvTimeoutError::Timeout) => Err(timeout()),
+            Err(RecvTimeoutError::Disconnected) if self.num_stops_asked() != num_stops_asked => Err(stopped()),
             Err(RecvTimeoutError::Disconnected) => Err(self.closed(what)),
         }
     }
 
-    fn need_connection(&self, what: &str, connection: Option<u64>) -> Result<(), DeviceError> {
-        let (state, num_connections) = {
+    fn need_connection(&self, what: &str, binding: Option<Binding>) -> Result<(), DeviceError> {
+        let (is_made, state, num_connections) = {
             let link = lock(&self.link);
-            (link.state(Instant::now()), link.num_connections())
+            (link.is_made(), link.state(Instant::now()), link.num_connections())
         };
         match state {
-            LinkState::Ready if connection.is_none_or(|connection| connection == num_connections) => Ok(()),
-            LinkState::Ready => Err(self.closed(what)),
+            _ if is_made && binding.is_none_or(|binding| binding.connection == num_connections) => Ok(()),
+            _ if is_made => Err(self.closed(what)),
             LinkState::Failed { error, .. } => Err(error),
-            LinkState::Off | LinkState::Connecting => Err(DeviceError::NotReady {
+            LinkState::Off | LinkState::Connecting | LinkState::Ready => Err(DeviceError::NotReady {
                 device: self.device,
                 found: "no connection yet".to_owned(),
                 needed: "a connection",
@@ -240,15 +263,31 @@ impl<Request> Post<Request> {
         DeviceError::Closed { device: self.device, request: what.to_owned() }
     }
 
+    /// Whether the connection with this number still holds.
+    pub fn has_connection(&self, connection: u64) -> bool {
+        let link = lock(&self.link);
+        link.is_made() && link.num_connections() == connection
+    }
+
     pub fn num_connections(&self) -> u64 {
         lock(&self.link).num_connections()
     }
 
-    /// Asks for a stop; answers which one it is.
+    fn num_stops_asked(&self) -> u64 {
+        lock(&self.board.inside).num_stops_asked
+    }
+
+    /// To the connection that is there now, until the next stop.
+    pub fn bind(&self) -> Binding {
+        Binding { connection: self.num_connections(), num_stops_asked: self.num_stops_asked() }
+    }
+
+    /// Asks for a stop; answers which one it is. Whatever waits is dropped, and so refused: it could be a move.
     pub fn ask_stop(&self) -> u64 {
         let mut count = 0;
         self.change(|inside| {
             inside.num_stops_asked += 1;
+            inside.requests.clear();
             count = inside.num_stops_asked;
         });
         count
@@ -256,26 +295,58 @@ impl<Request> Post<Request> {
 
     /// Whether the device took the stop; `None` where it could not be told in time.
     pub fn wait_for_stop(&self, count: u64) -> Option<bool> {
-        // The thread may be within a request, which has a deadline of its own.
-        let patience = self.deadlines.request + self.deadlines.stop;
-        let is_waiting = |inside: &mut Inside<Request>| inside.num_stops_served < count;
-        let waited = self.board.changed.wait_timeout_while(lock(&self.board.inside), patience, is_waiting);
+        let is_waiting = |inside: &mut Inside<Request>| inside.num_stops_served < count && !inside.is_left;
+        let waited = self.board.changed.wait_timeout_while(lock(&self.board.inside), self.stop_patience(), is_waiting);
         let (inside, timeout) = waited.unwrap_or_else(PoisonError::into_inner);
         if timeout.timed_out() { None } else { inside.stop_taken }
     }
 
-    /// Ends the thread; waits a little if it is at a request: a robot on the move is to be told to stop.
-    pub fn end(&self, patience: Duration) {
+    /// Within a move the thread may be at two questions, each with a deadline of its own, before it comes to the stop.
+    fn stop_patience(&self) -> Duration {
+        self.deadlines.request * 2 + self.deadlines.stop
+    }
+
+    /// Ends the thread; waits if something may be on the move: it is to be told to stop before the program ends.
+    pub fn end(&self) {
         let mut inside = lock(&self.board.inside);
         inside.is_over = true;
         self.board.changed.notify_all();
-        let is_at_it = |inside: &mut Inside<Request>| inside.is_serving && !inside.is_left;
-        let waited = self.board.changed.wait_timeout_while(inside, patience, is_at_it);
+        let is_at_it = |inside: &mut Inside<Request>| inside.is_at_it && !inside.is_left;
+        let waited = self.board.changed.wait_timeout_while(inside, self.stop_patience(), is_at_it);
         drop(waited);
     }
 
     fn change(&self, change: impl FnOnce(&mut Inside<Request>)) {
         change(&mut lock(&self.board.inside));
         self.board.changed.notify_all();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+
+    #[test]
+    fn what_waits_as_a_stop_is_asked_for_is_not_done() {
+        /// Long past anything that is waited for here.
+        const PATIENCE: Duration = Duration::from_secs(20);
+        let post = Arc::new(Post::new("Test", Deadlines::default(), Arc::new(|| {})));
+        post.change_link(|link| link.on_connected(Instant::now()));
+        let asked = Arc::clone(&post);
+        let asker = std::thread::spawn(move || {
+            asked.ask("a move", None, PATIENCE, |reply: SyncSender<Result<(), DeviceError>>| reply)
+        });
+        let deadline = Instant::now() + PATIENCE;
+        while lock(&post.board.inside).requests.is_empty() {
+            assert!(Instant::now() < deadline, "the move waits");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        let count = post.ask_stop();
+        assert!(matches!(post.next(None, false), Next::Stop(_)));
+        post.note_stopped(count, Some(true));
+        assert!(matches!(post.next(Some(Instant::now()), false), Next::Nothing));
+        assert_eq!(asker.join().ok(), Some(Err(DeviceError::Stopped { device: "Test" })));
     }
 }

@@ -4,7 +4,7 @@ use std::sync::mpsc::SyncSender;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use super::post::{Post, lock};
+use super::post::{Binding, Post, lock};
 use super::{Connect, Deadlines, Duty, Hold, start};
 use crate::device::driver::{LinearMove, MoveState, Readiness, RobotDriver, RobotReport};
 use crate::device::error::DeviceError;
@@ -53,6 +53,9 @@ impl RobotDuty {
         deadline: Instant,
         post: &Post<RobotRequest>,
     ) -> Result<(), DeviceError> {
+        if post.is_interrupted_within(Duration::ZERO) {
+            return Err(DeviceError::Stopped { device: driver.name() });
+        }
         let start = Instant::now();
         // Of a move whose start got no answer nobody knows whether it began.
         self.is_moving = true;
@@ -137,13 +140,22 @@ impl Duty for RobotDuty {
     }
 
     fn stop(&mut self, driver: &mut Robot) -> Result<(), DeviceError> {
-        driver.stop(Instant::now() + self.deadlines.stop)?;
-        self.is_moving = false;
-        Ok(())
+        match driver.stop(Instant::now() + self.deadlines.stop) {
+            // What only reads was never sent anywhere.
+            Ok(()) | Err(DeviceError::CannotMove { .. }) => {
+                self.is_moving = false;
+                Ok(())
+            }
+            Err(error) => Err(error),
+        }
     }
 
     fn may_be_moving(&self) -> bool {
         self.is_moving
+    }
+
+    fn hide(&mut self) {
+        *lock(&self.latest) = None;
     }
 }
 
@@ -151,8 +163,7 @@ impl Duty for RobotDuty {
 #[derive(Clone, Debug)]
 pub struct RobotClient {
     post: Arc<Post<RobotRequest>>,
-    /// The only connection that is asked, if it matters.
-    connection: Option<u64>,
+    binding: Option<Binding>,
     latest: Arc<Mutex<Option<RobotReport>>>,
 }
 
@@ -162,7 +173,7 @@ impl RobotClient {
     /// # Errors
     /// [`DeviceError`].
     pub fn report(&self) -> Result<RobotReport, DeviceError> {
-        self.post.ask("its pose", self.connection, self.post.deadlines.request * 2, RobotRequest::Report)
+        self.post.ask("its pose", self.binding, self.post.deadlines.request * 2, RobotRequest::Report)
     }
 
     /// Moves, and comes back when the move has ended.
@@ -172,7 +183,7 @@ impl RobotClient {
     pub fn move_to(&self, motion: LinearMove, patience: Duration) -> Result<(), DeviceError> {
         let deadline = Instant::now() + patience;
         let patience = patience + self.post.deadlines.request * 3;
-        self.post.ask("a move", self.connection, patience, |reply| RobotRequest::Move { motion, deadline, reply })
+        self.post.ask("a move", self.binding, patience, |reply| RobotRequest::Move { motion, deadline, reply })
     }
 
     /// Stops the robot, whatever it does. Comes back at once.
@@ -192,10 +203,16 @@ impl RobotClient {
         self.post.deadlines
     }
 
-    /// One that asks over the connection that is there now and over none that may be made later.
+    /// One that asks over the connection that is there now, and neither over a later one nor after the next stop.
     #[must_use]
     pub fn of_this_connection(&self) -> Self {
-        Self { connection: Some(self.post.num_connections()), ..self.clone() }
+        Self { binding: Some(self.post.bind()), ..self.clone() }
+    }
+
+    /// Whether the connection with this number still holds, whatever the robot answers over it.
+    #[must_use]
+    pub fn has_connection(&self, connection: u64) -> bool {
+        self.post.has_connection(connection)
     }
 
     /// Tells the connection that is there now from those before.
@@ -237,7 +254,7 @@ impl RobotWorker {
         let latest = Arc::default();
         let duty = RobotDuty { latest: Arc::clone(&latest), deadlines, is_moving: false };
         let hold = start(duty, connect, deadlines, wake);
-        Self { client: RobotClient { post: Arc::clone(&hold.0), connection: None, latest }, _hold: hold }
+        Self { client: RobotClient { post: Arc::clone(&hold.0), binding: None, latest }, _hold: hold }
     }
 
     /// Whom to ask.

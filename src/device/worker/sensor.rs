@@ -4,7 +4,7 @@ use std::sync::mpsc::SyncSender;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use super::post::{Post, lock};
+use super::post::{Binding, Post, lock};
 use super::{Connect, Deadlines, Duty, Hold, start};
 use crate::device::driver::{ProfileReading, SensorDriver};
 use crate::device::error::DeviceError;
@@ -131,6 +131,10 @@ impl Duty for SensorDuty {
     fn may_be_moving(&self) -> bool {
         false
     }
+
+    fn hide(&mut self) {
+        lock(&self.shown).live = None;
+    }
 }
 
 /// Profiles a second, smoothed over about ten of them.
@@ -156,8 +160,7 @@ impl Rate {
 #[derive(Clone, Debug)]
 pub struct SensorClient {
     post: Arc<Post<SensorRequest>>,
-    /// The only connection that is asked, if it matters.
-    connection: Option<u64>,
+    binding: Option<Binding>,
     shown: Arc<Mutex<Shown>>,
 }
 
@@ -167,7 +170,7 @@ impl SensorClient {
     /// # Errors
     /// [`DeviceError`].
     pub fn newest(&self) -> Result<Option<ProfileReading>, DeviceError> {
-        self.post.ask("a profile", self.connection, self.post.deadlines.request * 2, SensorRequest::Newest)
+        self.post.ask("a profile", self.binding, self.post.deadlines.request * 2, SensorRequest::Newest)
     }
 
     /// Forgets what was measured so far, where the device can.
@@ -175,7 +178,7 @@ impl SensorClient {
     /// # Errors
     /// [`DeviceError`].
     pub fn forget(&self) -> Result<(), DeviceError> {
-        self.post.ask("clearing its memory", self.connection, self.post.deadlines.request * 2, SensorRequest::Forget)
+        self.post.ask("clearing its memory", self.binding, self.post.deadlines.request * 2, SensorRequest::Forget)
     }
 
     /// What to look for in the live profiles; `None`: for nothing.
@@ -190,10 +193,10 @@ impl SensorClient {
         }
     }
 
-    /// One that asks over the connection that is there now and over none that may be made later.
+    /// One that asks over the connection that is there now, and neither over a later one nor after the next stop.
     #[must_use]
     pub fn of_this_connection(&self) -> Self {
-        Self { connection: Some(self.post.num_connections()), ..self.clone() }
+        Self { binding: Some(self.post.bind()), ..self.clone() }
     }
 
     /// Tells the connection that is there now from those before.
@@ -241,7 +244,7 @@ impl SensorWorker {
         let shown = Arc::default();
         let duty = SensorDuty { shown: Arc::clone(&shown), deadlines, rate: Rate::default() };
         let hold = start(duty, connect, deadlines, wake);
-        Self { client: SensorClient { post: Arc::clone(&hold.0), connection: None, shown }, _hold: hold }
+        Self { client: SensorClient { post: Arc::clone(&hold.0), binding: None, shown }, _hold: hold }
     }
 
     /// Whom to ask.

@@ -156,11 +156,93 @@ fn a_dropped_worker_ends_without_hanging_and_stops_what_moves() {
     let (robot, sensor) = cell.start(patient());
     wait_until("the connection", || is_ready(&robot));
     let (client, motion) = (robot.client().clone(), motion(&cell));
+    let stopped = client.clone();
     let mover = std::thread::spawn(move || client.move_to(motion, PATIENCE));
     wait_until("the move", || cell.world().target.is_some());
+    // The driver takes its time as the end comes.
+    let (sender, is_at_it) = std::sync::mpsc::channel();
+    cell.world().during_report = Some(Box::new(move || {
+        sender.send(()).ok();
+        std::thread::sleep(Duration::from_millis(800));
+    }));
+    is_at_it.recv_timeout(PATIENCE).expect("a look within the move");
     drop((robot, sensor));
-    wait_until("the stop", || cell.world().num_stops == 1);
+    assert_eq!(cell.world().num_stops, 1, "the program may end now");
     assert!(mover.join().expect("no panic").is_err());
+    let start = Instant::now();
+    assert_eq!(stopped.stop_and_wait(), Some(true));
+    assert!(start.elapsed() < PATIENCE, "there is nobody to wait for");
+}
+
+#[test]
+fn a_stop_that_is_refused_stays_owed_and_is_told() {
+    let cell = FakeCell::new(5.0);
+    cell.world().fault = Fault::MoveHangs;
+    let (robot, _sensor) = cell.start(patient());
+    wait_until("the connection", || is_ready(&robot));
+    let (client, motion) = (robot.client().clone(), motion(&cell));
+    let mover = std::thread::spawn(move || client.move_to(motion, PATIENCE));
+    wait_until("the move", || cell.world().target.is_some());
+    cell.world().takes_stop = false;
+    assert_eq!(robot.client().stop_and_wait(), Some(false));
+    assert_eq!(mover.join().expect("no panic"), Err(DeviceError::Stopped { device: "Robot" }));
+    let is_refused = |error: &DeviceError| matches!(error, DeviceError::Refused { .. });
+    wait_until("the reason", || match robot.client().link_state(Instant::now()) {
+        LinkState::Failed { error, .. } => is_refused(&error),
+        _ => false,
+    });
+    let outcome = robot.client().move_to(self::motion(&cell), PATIENCE);
+    assert!(outcome.as_ref().is_err_and(is_refused), "nothing moves before the stop is taken: {outcome:?}");
+    cell.world().takes_stop = true;
+    wait_until("the stop", || is_ready(&robot));
+    let world = cell.world();
+    assert_eq!((world.num_stops, world.num_moves, world.target), (1, 1, None));
+}
+
+#[test]
+fn what_only_reads_needs_no_stop() {
+    let cell = FakeCell::new(5.0);
+    cell.world().is_read_only = true;
+    let (robot, _sensor) = cell.start(patient());
+    wait_until("the connection", || is_ready(&robot));
+    assert_eq!(robot.client().stop_and_wait(), Some(true));
+}
+
+#[test]
+fn a_device_that_refuses_to_show_itself_is_told_and_shows_nothing_old() {
+    let cell = FakeCell::new(5.0);
+    let (robot, sensor) = cell.start(patient());
+    let (robot, sensor) = (robot.client(), sensor.client());
+    let states = || [robot.link_state(Instant::now()), sensor.link_state(Instant::now())];
+    let shown = || (robot.latest().is_some(), sensor.live().is_some());
+    wait_until("both", || shown() == (true, true));
+    cell.world().fault = Fault::LooksRefused;
+    let is_refused = |state: &LinkState| matches!(state, LinkState::Failed { error: DeviceError::Refused { .. }, .. });
+    wait_until("the reasons", || states().iter().all(is_refused));
+    assert_eq!(shown(), (false, false));
+    assert!(robot.has_connection(1), "it is no break");
+    cell.world().fault = Fault::None;
+    wait_until("both again", || shown() == (true, true) && states() == [LinkState::Ready, LinkState::Ready]);
+    assert!(robot.has_connection(1));
+}
+
+#[test]
+fn what_was_seen_over_one_connection_is_not_shown_over_the_next() {
+    let cell = FakeCell::new(5.0);
+    let (robot, _sensor) = cell.start(short_deadlines());
+    wait_until("a pose", || robot.client().latest().is_some());
+    cell.world().fault = Fault::RobotClosed;
+    wait_until("the break", || !is_ready(&robot));
+    let client = robot.client().clone();
+    let (sender, seen) = std::sync::mpsc::channel();
+    {
+        let mut world = cell.world();
+        world.during_report = Some(Box::new(move || {
+            sender.send(client.latest()).ok();
+        }));
+        world.fault = Fault::None;
+    }
+    assert_eq!(seen.recv_timeout(PATIENCE), Ok(None), "as the first look over the next one begins");
 }
 
 #[test]

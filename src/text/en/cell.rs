@@ -64,12 +64,17 @@ pub fn reason_of_end(end: &RoutineEnd) -> Option<String> {
         RoutineEnd::Searched(end) if end.is_found() => return None,
         RoutineEnd::Searched(end) => end.to_string(),
         RoutineEnd::NotAllowed(refusal) => format!("the robot was not moved: {refusal}"),
-        RoutineEnd::NeverStill { moved_mm } => format!(
+        RoutineEnd::NeverStill { moved_mm: None } => {
+            "the robot did not stand still: its controller says that it moves, again and again. Let it settle longer"
+                .to_owned()
+        }
+        RoutineEnd::NeverStill { moved_mm: Some(moved_mm) } => format!(
             "the robot did not stand still: it moved by {moved_mm:.3} mm during a profile, again and again. Let it settle longer, or allow more"
         ),
         RoutineEnd::StaleProfiles { trigger_count } => format!(
             "no profile came that is later than the move: the trigger count stayed at {trigger_count}. See whether the profiler still measures, and how it is triggered"
         ),
+        RoutineEnd::Failed { error, robot_stopped: Some(true) } => format!("{error}. No move is under way"),
         RoutineEnd::Failed { error, robot_stopped } => format!("{error}. {}", stop_taken(*robot_stopped)),
         RoutineEnd::Stopped { robot_stopped } => format!("stopped on request. {}", stop_taken(*robot_stopped)),
     })

@@ -114,9 +114,7 @@ impl Workbench {
     /// A connection that was made anew is another one: nobody has armed that.
     fn disarm_if_lost(&mut self) -> bool {
         let Some(armed) = self.cell.armed else { return false };
-        let is_same = self.cell.robot.as_ref().is_some_and(|robot| {
-            self.cell.view.robot.state == LinkState::Ready && robot.client().num_connections() == armed.connection
-        });
+        let is_same = self.cell.robot.as_ref().is_some_and(|robot| robot.client().has_connection(armed.connection));
         if is_same {
             return false;
         }

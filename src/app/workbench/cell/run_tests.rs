@@ -62,7 +62,7 @@ fn only_what_is_of_the_pose_lets_a_run_go_on() {
         (failed(refused(), Some(true)), false),
         (RoutineEnd::Searched(stuck), false),
         (RoutineEnd::Searched(moved), false),
-        (RoutineEnd::NeverStill { moved_mm: 0.3 }, false),
+        (RoutineEnd::NeverStill { moved_mm: Some(0.3) }, false),
         (RoutineEnd::StaleProfiles { trigger_count: 7 }, false),
     ] {
         let mut workbench = bench(Stage::Measuring);

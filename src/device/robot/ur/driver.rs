@@ -29,8 +29,10 @@ const PEAK_OVER_MEAN: f64 = 2.0;
 const START_GRACE: Duration = Duration::from_secs(2);
 /// A program that has done its last statement has ended after this.
 const END_GRACE: Duration = Duration::from_millis(300);
-/// The switch between local and remote control is looked at so often.
+/// The switch between local and remote control is looked at so often, and a dashboard that failed is tried again.
 const REMOTE_AGE: Duration = Duration::from_secs(1);
+/// A dashboard that is tried again must not hold up the robot for longer.
+const DASHBOARD_PATIENCE: Duration = Duration::from_millis(200);
 
 /// How far the other ports are from that of RTDE (30004): secondary interface 30002, realtime 30003, dashboard 29999.
 const BELOW_RTDE_SECONDARY: u16 = 2;
@@ -43,6 +45,7 @@ pub struct UrRobot {
     endpoint: Endpoint,
     stream: Stream,
     dashboard: Option<Dashboard>,
+    dashboard_tried_at: Instant,
     motion: Option<Underway>,
     last_mark: i32,
 }
@@ -62,7 +65,6 @@ struct Underway {
 struct Dashboard {
     wire: Wire,
     is_remote: Option<bool>,
-    asked_at: Instant,
 }
 
 impl UrRobot {
@@ -75,16 +77,25 @@ impl UrRobot {
         let state = stream.newest(deadline)?;
         // It is of use and not needed: half of the time that is left is enough to try.
         let half_way = Instant::now() + deadline.saturating_duration_since(Instant::now()) / 2;
-        let dashboard = Dashboard::connect(&below(endpoint, BELOW_RTDE_DASHBOARD), half_way).ok();
-        Ok(Self { endpoint: endpoint.clone(), stream, dashboard, motion: None, last_mark: state.mark })
+        let dashboard = Dashboard::connect(endpoint, half_way).ok();
+        let dashboard_tried_at = Instant::now();
+        Ok(Self {
+            endpoint: endpoint.clone(),
+            stream,
+            dashboard,
+            dashboard_tried_at,
+            motion: None,
+            last_mark: state.mark,
+        })
     }
 
     fn readiness(&mut self, state: &UrState, deadline: Instant) -> Readiness {
-        if let Some(dashboard) = &mut self.dashboard
-            && dashboard.asked_at.elapsed() >= REMOTE_AGE
-            && dashboard.ask(deadline).is_err()
-        {
-            self.dashboard = None;
+        if self.dashboard_tried_at.elapsed() >= REMOTE_AGE {
+            self.dashboard = match self.dashboard.take() {
+                Some(mut dashboard) => dashboard.ask(deadline).is_ok().then_some(dashboard),
+                None => Dashboard::connect(&self.endpoint, deadline.min(Instant::now() + DASHBOARD_PATIENCE)).ok(),
+            };
+            self.dashboard_tried_at = Instant::now();
         }
         state.readiness(self.is_remote())
     }
@@ -223,6 +234,7 @@ impl RobotDriver for UrRobot {
     fn stop(&mut self, deadline: Instant) -> Result<(), DeviceError> {
         let request = "handeye_stop";
         let start = Instant::now();
+        let half_way = start + deadline.saturating_duration_since(start) / 2;
         // Over the same connection, so that it cannot overtake the move.
         let mut script = match self.motion.take().and_then(|motion| motion.script) {
             Some(script) => script,
@@ -232,13 +244,23 @@ impl RobotDriver for UrRobot {
         loop {
             script.take_arrived(request, Duration::ZERO)?;
             let state = self.stream.newest(deadline)?;
-            // In a stop of its own, or in local control, the controller runs no program of ours.
-            let is_obeyed =
-                state.mark == self.last_mark || matches!(state.readiness(self.is_remote()), Readiness::NotReady { .. });
+            let readiness = state.readiness(self.is_remote());
+            // In a stop of its own, or in local control, the controller takes no program of ours, and does not always say
+            // that it is in one. Then it is enough that none runs; one that is held up goes on as soon as it may.
+            let takes_none = matches!(readiness, Readiness::NotReady { .. }) || Instant::now() >= half_way;
+            let is_obeyed = state.mark == self.last_mark || takes_none && state.is_program_stopped();
             if is_obeyed && state.is_standing() {
                 return Ok(());
             }
             if Instant::now() >= deadline {
+                if let Readiness::NotReady { found, .. } = readiness {
+                    return Err(DeviceError::NotReady {
+                        device: DEVICE,
+                        found: format!("a program that has not ended, and {found}"),
+                        needed: "no program",
+                        remedy: "stop the program on the pendant before anything else",
+                    });
+                }
                 return Err(DeviceError::Timeout {
                     device: DEVICE,
                     request: request.to_owned(),
@@ -264,8 +286,8 @@ impl Drop for UrRobot {
 impl Dashboard {
     fn connect(endpoint: &Endpoint, deadline: Instant) -> Result<Self, DeviceError> {
         let remedy = "enable the dashboard in the controller's services";
-        let wire = Wire::connect(DEVICE, endpoint, deadline, remedy)?;
-        let mut dashboard = Self { wire, is_remote: None, asked_at: Instant::now() };
+        let wire = Wire::connect(DEVICE, &below(endpoint, BELOW_RTDE_DASHBOARD), deadline, remedy)?;
+        let mut dashboard = Self { wire, is_remote: None };
         dashboard.line("the greeting", deadline)?;
         dashboard.ask(deadline)?;
         Ok(dashboard)
@@ -275,7 +297,6 @@ impl Dashboard {
         let question = Question::IsInRemoteControl;
         self.wire.send(question.words(), question.encode().as_bytes(), deadline)?;
         self.is_remote = dashboard::parse_remote_control(&self.line(question.words(), deadline)?);
-        self.asked_at = Instant::now();
         Ok(())
     }
 

@@ -95,13 +95,13 @@ impl Statement {
         let arguments = Arguments::parse(arguments)?;
         match name.trim() {
             "movel" => Some(Self::MoveL {
-                pose: UrPose(arguments.vector?),
+                pose: arguments.pose?,
                 acceleration_m_s2: arguments.named("a", 0).unwrap_or(1.2),
                 speed_m_s: arguments.named("v", 1).unwrap_or(0.25),
                 time_s: arguments.named("t", 2).unwrap_or(0.0),
             }),
             "movej" => Some(Self::MoveJ {
-                joints_rad: arguments.vector?,
+                joints_rad: arguments.joints_rad?,
                 acceleration_rad_s2: arguments.named("a", 0).unwrap_or(1.4),
                 speed_rad_s: arguments.named("v", 1).unwrap_or(1.05),
             }),
@@ -116,22 +116,27 @@ impl Statement {
     }
 }
 
-/// Arguments of a call: at most one vector, then numbers by name or by place.
+/// Arguments of a call: at most one vector, then numbers by name or by place. Only its `p` tells a pose from joint angles.
 struct Arguments<'a> {
-    vector: Option<[f64; 6]>,
+    pose: Option<UrPose>,
+    joints_rad: Option<[f64; 6]>,
     numbers: Vec<(Option<&'a str>, f64)>,
 }
 
 impl<'a> Arguments<'a> {
     fn parse(text: &'a str) -> Option<Self> {
-        let (vector, rest) = match text.split_once('[') {
-            Some((before, inside)) if matches!(before.trim(), "" | "p") => {
+        let (pose, joints_rad, rest) = match text.split_once('[') {
+            Some((before, inside)) => {
                 let (inside, rest) = inside.split_once(']')?;
                 let values: Vec<f64> = inside.split(',').map(number).collect::<Option<_>>()?;
-                (Some(values.try_into().ok()?), rest.trim_start().trim_start_matches(','))
+                let (values, rest) = (values.try_into().ok()?, rest.trim_start().trim_start_matches(','));
+                match before.trim() {
+                    "p" => (Some(UrPose(values)), None, rest),
+                    "" => (None, Some(values), rest),
+                    _ => return None,
+                }
             }
-            Some(_) => return None,
-            None => (None, text),
+            None => (None, None, text),
         };
         let numbers = rest
             .split(',')
@@ -141,7 +146,7 @@ impl<'a> Arguments<'a> {
                 None => Some((None, number(argument)?)),
             })
             .collect::<Option<_>>()?;
-        Some(Self { vector, numbers })
+        Some(Self { pose, joints_rad, numbers })
     }
 
     /// The number of this name, or the one without a name at this place.
@@ -200,17 +205,24 @@ impl Program {
     /// # Errors
     /// [`MessageError`] if it is too long.
     pub fn len_of_first(bytes: &[u8]) -> Result<Option<usize>, MessageError> {
+        /// Each has an `end` of its own.
+        const OPENERS: [&[u8]; 5] = [b"def", b"sec", b"thread", b"if", b"while"];
         let mut end = 0;
-        let mut is_function = false;
+        let mut depth = 0_usize;
         for line in bytes.split_inclusive(|byte| *byte == b'\n') {
             if !line.ends_with(b"\n") {
                 break;
             }
             end += line.len();
-            let words = line.trim_ascii();
-            is_function |= words.starts_with(b"def ") || words.starts_with(b"sec ");
-            let is_blank = words.is_empty();
-            if (is_function && words == b"end") || (!is_function && !is_blank) {
+            let line = line.trim_ascii();
+            let is_of_word = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
+            let word = line.split(|byte| !is_of_word(byte)).next().unwrap_or_default();
+            if OPENERS.contains(&word) {
+                depth += 1;
+            } else if word == b"end" {
+                depth = depth.saturating_sub(1);
+            }
+            if depth == 0 && !line.is_empty() {
                 return Ok(Some(end));
             }
         }

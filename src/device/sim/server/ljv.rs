@@ -14,7 +14,7 @@ use crate::device::sim::world::World;
 const MEMORY: u32 = 1000;
 /// Most profiles of one reply, so that it stays short.
 const MAX_PROFILES: u8 = 16;
-/// Nothing is wrong, nothing is busy, and settings are 0: continuous trigger, batch off, and so on.
+/// Nothing is wrong, and nothing is busy.
 const ALL_ZERO: [u8; 4] = [0; 4];
 
 /// Talks to one client.
@@ -33,33 +33,39 @@ pub fn serve(world: &World, connection: &mut Connection) {
     }
 }
 
-/// Pushes profiles while the stream runs. The client sends nothing.
+/// Pushes the profiles of streams that are started from now on. The client sends nothing; the stream ends with it.
 pub fn serve_stream(world: &World, connection: &mut Connection) {
+    let mut seen = world.stream().number;
+    // The next profile, while a stream runs.
     let mut next = None;
     while connection.take_arrived(STREAM_LOOK).is_some() {
-        match (world.stream_from(), next) {
-            (Some(from), _) => {
-                let (newest, _) = world.trigger_counts();
-                // What could not be sent in time is left out.
-                let first = next.unwrap_or(from).max(newest.saturating_sub(MAX_BEHIND));
-                for trigger_count in first..=newest {
-                    let profiles = vec![raw_profile(world, trigger_count)];
-                    let whole = ProfileReply { profiles, ..scales(world) }.encode();
-                    if !connection.send(&whole[INFO_LEN..]) {
-                        return;
-                    }
-                }
-                next = Some(first.max(newest.saturating_add(1)));
+        let stream = world.stream();
+        let is_another = stream.number != seen;
+        if next.is_some() && (is_another || stream.from.is_none()) {
+            next = None;
+            if !connection.send(&STREAM_STOPPED) {
+                break;
             }
-            (None, Some(_)) => {
-                next = None;
-                if !connection.send(&STREAM_STOPPED) {
-                    return;
-                }
-            }
-            (None, None) => {}
         }
+        if is_another {
+            seen = stream.number;
+            next = stream.from;
+        }
+        let Some(first) = next else { continue };
+        let (newest, _) = world.trigger_counts();
+        // What could not be sent in time is left out.
+        let first = first.max(newest.saturating_sub(MAX_BEHIND));
+        let is_sent = (first..=newest).all(|trigger_count| {
+            let profiles = vec![raw_profile(world, trigger_count)];
+            let whole = ProfileReply { profiles, ..scales(world) }.encode();
+            connection.send(&whole[INFO_LEN..])
+        });
+        if !is_sent {
+            break;
+        }
+        next = Some(first.max(newest.saturating_add(1)));
     }
+    world.end_stream(seen);
 }
 
 /// The data of the reply, or the code of the refusal.
@@ -74,10 +80,12 @@ fn answer(world: &World, request: &Request) -> Result<Vec<u8>, u8> {
             world.change_program(*program);
             Ok(Vec::new())
         }
-        (command::GET_SETTING, data) if SettingRequest::parse(data).is_some() => Ok(ALL_ZERO.to_vec()),
-        (command::SET_SETTING | command::REFLECT_SETTING, [_, ..]) | (command::GET_ERROR | CHECK_MEMORY_ACCESS, []) => {
-            Ok(ALL_ZERO.to_vec())
+        (command::GET_SETTING, data) => SettingRequest::parse(data).map(setting).ok_or(code::COMMAND_LENGTH),
+        // A setting that is taken and changes nothing would mislead; and there are no batches.
+        (command::SET_SETTING | command::REFLECT_SETTING, [_, ..]) | (START_BATCH | STOP_BATCH, []) => {
+            Err(code::STATUS)
         }
+        (command::GET_ERROR | CHECK_MEMORY_ACCESS, []) => Ok(ALL_ZERO.to_vec()),
         (command::GET_PROFILE, data) => {
             let wanted = ProfileRequest::parse(data).ok_or(code::COMMAND_LENGTH)?;
             profiles(world, wanted).map(|reply| reply.encode()).ok_or(code::PARAMETER)
@@ -85,11 +93,11 @@ fn answer(world: &World, request: &Request) -> Result<Vec<u8>, u8> {
         (PREPARE_STREAM, [position @ 0..=2, _, _, _]) => Ok(prepare_stream(world, *position)),
         (START_STREAM, [PREPARE_STREAM, _, _, _, start_code @ ..]) => {
             let start = start_code.try_into().map(u32::from_le_bytes).map_err(|_| code::COMMAND_LENGTH)?;
-            world.set_stream(Some(start));
+            world.start_stream(start);
             Ok(Vec::new())
         }
         (STOP_STREAM, _) => {
-            world.set_stream(None);
+            world.end_stream(world.stream().number);
             Ok(Vec::new())
         }
         (command::CHANGE_PROGRAM | PREPARE_STREAM | START_STREAM, [_, _, _, _, ..]) => Err(code::PARAMETER),
@@ -98,6 +106,18 @@ fn answer(world: &World, request: &Request) -> Result<Vec<u8>, u8> {
     }
 }
 
+/// The settings do not change: 0 stands for a continuous trigger, batch off, and so on.
+fn setting(wanted: SettingRequest) -> Vec<u8> {
+    /// Category and item within a program; 6 is 1 kHz, as the world has it.
+    const SAMPLING: [u8; 2] = [0, 2];
+    const SAMPLING_1_KHZ: u8 = 6;
+    let is_sampling = wanted.kind >= SettingRequest::FIRST_PROGRAM && [wanted.category, wanted.item] == SAMPLING;
+    vec![if is_sampling { SAMPLING_1_KHZ } else { 0 }, 0, 0, 0]
+}
+
+/// Begin and end of a batch.
+const START_BATCH: u8 = 0x22;
+const STOP_BATCH: u8 = 0x23;
 /// Asks whether the memory is being written to.
 const CHECK_MEMORY_ACCESS: u8 = 0x34;
 /// The high-speed stream.
@@ -105,12 +125,13 @@ const PREPARE_STREAM: u8 = 0x47;
 const START_STREAM: u8 = 0xa0;
 const STOP_STREAM: u8 = 0x48;
 /// What is answered above where its length is right.
-const KNOWN: [u8; 10] = [
+const KNOWN: [u8; 11] = [
     command::GET_ERROR,
     command::SOFTWARE_TRIGGER,
+    START_BATCH,
+    STOP_BATCH,
     command::CLEAR_MEMORY,
     command::CHANGE_PROGRAM,
-    command::GET_SETTING,
     command::SET_SETTING,
     command::REFLECT_SETTING,
     CHECK_MEMORY_ACCESS,

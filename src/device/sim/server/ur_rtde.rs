@@ -12,6 +12,8 @@ use crate::geometry::{Rigid, Transform};
 pub const ROBOT_MODE_RUNNING: i32 = 7;
 /// The mode of a robot that nothing holds up.
 pub const SAFETY_MODE_NORMAL: i32 = 1;
+/// The mode of a joint that runs.
+pub const JOINT_MODE_RUNNING: i32 = 253;
 
 /// The version that the controller says it has.
 const CONTROLLER_VERSION: [u32; 4] = [5, 12, 6, 1_102_099];
@@ -162,7 +164,7 @@ fn output(arm: &ArmReport, name: &str) -> Option<Value> {
         | "payload_inertia"
         | "tcp_offset" => STILL,
         "elbow_position" | "elbow_velocity" | "actual_tool_accelerometer" | "payload_cog" => Value::Vector3([0.0; 3]),
-        "joint_mode" => Value::Vector6I32([255; 6]),
+        "joint_mode" => Value::Vector6I32([JOINT_MODE_RUNNING; 6]),
         "robot_mode" => Value::I32(ROBOT_MODE_RUNNING),
         "safety_mode" | "safety_status" => Value::I32(SAFETY_MODE_NORMAL),
         "runtime_state" => Value::U32(if arm.is_running { 2 } else { 1 }),
