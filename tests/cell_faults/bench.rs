@@ -6,9 +6,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::time::{Duration, Instant};
 
-use handeye::app::cell::{CellCommand, CellSettings, CellView, RoughMounting};
+use handeye::app::cell::{Activity, CellCommand, CellSettings, CellView, RoughMounting};
 use handeye::app::{Command, Workbench};
-use handeye::device::sim::{SimCell, SimOptions};
+use handeye::device::sim::{Head, SimCell, SimOptions};
 use handeye::device::{Deadlines, LinkState, RoutineEnd, SearchEnd, SearchReport};
 use handeye::geometry::{Rigid, Vec3};
 use handeye::session::{Session, Target};
@@ -16,7 +16,12 @@ use handeye::session::{Session, Target};
 /// All deadlines of one routine together, on a machine that does other things as well. A routine that takes longer hangs.
 pub const PATIENCE: Duration = Duration::from_mins(1);
 /// A way so long that many polls, and a lost device, fit into it, mm.
-pub const LONG_WAY_MM: f64 = 100.0;
+const LONG_WAY_MM: f64 = 100.0;
+
+/// With the head that sees the ball from furthest away another view of it is a long way off. It sees large balls.
+pub fn far_view(options: SimOptions) -> SimOptions {
+    SimOptions { head: Head::by_id("lj-v7300").expect("there is one"), radius_mm: 30.0, ..options }
+}
 
 pub struct Cell {
     pub workbench: Workbench,
@@ -24,28 +29,24 @@ pub struct Cell {
     pub sim: SimCell,
     /// The last report of each station's search, by the number of stations at that time.
     searches: BTreeMap<usize, Arc<SearchReport>>,
+    /// Whether the robot was seen on the way to a station.
+    pub has_set_out: bool,
 }
 
 impl Cell {
-    /// Connected, in a fresh session, with the mounting of the drawing.
+    /// Connected, in a fresh session, with the mounting known: where the robot is sent it sees the ball.
     pub fn start(options: &SimOptions, deadlines: Deadlines) -> Self {
         let sim = SimCell::start(options).expect("ports are free");
         let (workbench, woken) = workbench(deadlines);
-        let mut cell = Self { workbench, woken, sim, searches: BTreeMap::new() };
+        let mut cell = Self { workbench, woken, sim, searches: BTreeMap::new(), has_set_out: false };
         let truth = cell.sim.truth;
         let mut session = Session::new(Target::ball(truth.radius_mm));
         session.sensor.profile_std_mm = Some(truth.profile_std_mm);
         cell.workbench.open_session(session, None);
         cell.tell(CellCommand::ConnectRobot(cell.sim.robot_setup.clone()));
         cell.tell(CellCommand::ConnectSensor(cell.sim.sensor_setup.clone()));
-        let rough = truth.rough_flange_from_sensor;
-        cell.change_settings(|settings| {
-            settings.settle.settle_ms = 10;
-            settings.mounting = Some(RoughMounting {
-                translation_mm: rough.translation.vector.into(),
-                quaternion_wxyz: [rough.rotation.w, rough.rotation.i, rough.rotation.j, rough.rotation.k],
-            });
-        });
+        cell.change_settings(|settings| settings.settle.settle_ms = 10);
+        cell.set_mounting(&truth.flange_from_sensor);
         cell
     }
 
@@ -59,6 +60,15 @@ impl Cell {
         self.tell(CellCommand::SetSettings(Box::new(settings)));
     }
 
+    pub fn set_mounting(&mut self, flange_from_sensor: &Rigid) {
+        let q = flange_from_sensor.rotation;
+        let mounting = RoughMounting {
+            translation_mm: flange_from_sensor.translation.vector.into(),
+            quaternion_wxyz: [q.w, q.i, q.j, q.k],
+        };
+        self.change_settings(|settings| settings.mounting = Some(mounting));
+    }
+
     pub fn view(&self) -> &CellView {
         self.workbench.cell()
     }
@@ -70,6 +80,8 @@ impl Cell {
     pub fn poll(&mut self) {
         self.woken.recv_timeout(Duration::from_millis(2)).ok();
         self.workbench.poll();
+        // During a search there is a report of it.
+        self.has_set_out |= self.view().activity == Activity::Moving && self.view().search.is_none();
         if let Some(report) = self.view().search.clone().filter(|report| !report.points.is_empty()) {
             self.searches.insert(self.session().stations.len(), report);
         }
@@ -113,9 +125,12 @@ impl Cell {
     /// Sets out on a long way to a station; answers where to, mm. Comes back while the robot is on the move.
     #[track_caller]
     pub fn set_out(&mut self, what: &str) -> Vec3 {
+        const NUM_PROPOSALS: usize = 12;
         self.tell(CellCommand::ProposeStation);
-        loop {
-            assert!(self.becomes(|cell| cell.view().proposal.is_some()), "{what}: {:?}", self.workbench.notices());
+        for _ in 0..NUM_PROPOSALS {
+            let is_answered = |cell: &Self| cell.view().proposal.is_some() || !cell.workbench.notices().is_empty();
+            assert!(self.becomes(is_answered), "{what}: no proposal");
+            assert!(self.view().proposal.is_some(), "{what}: {:?}", self.workbench.notices());
             let proposal = self.view().proposal.clone().expect("proposed");
             if proposal.refusal.is_none() && proposal.distance_mm >= LONG_WAY_MM {
                 let from_mm = self.position_mm();
@@ -126,6 +141,7 @@ impl Cell {
             }
             self.tell(CellCommand::SkipProposal);
         }
+        panic!("{what}: none of the proposed poses is far enough");
     }
 
     /// Where the flange truly is, mm.
@@ -237,7 +253,7 @@ fn workbench(deadlines: Deadlines) -> (Workbench, Receiver<()>) {
 /// Runs them side by side; the outcomes come in the order of the threads.
 pub fn in_parallel<T: Send>(num: usize, run: impl Fn(usize) -> T + Sync) -> Vec<T> {
     /// They mostly wait.
-    const NUM_THREADS: usize = 16;
+    const NUM_THREADS: usize = 32;
     let next = AtomicUsize::new(0);
     std::thread::scope(|scope| {
         let work = || {

@@ -69,6 +69,7 @@ fn come_to(case: &Case, direction: f64) -> Option<(Cell, Option<Vec3>)> {
         time_scale: TIME_SCALE,
         ..SimOptions::default()
     };
+    let options = if case.moment == Moment::Moving { bench::far_view(options) } else { options };
     let is_too_late = case.spec.fault == Fault::Slow && case.spec.num_requests.is_none();
     let mut cell = Cell::start(&options, deadlines(if is_too_late { SHORT } else { LONG }));
     cell.arm();
@@ -165,7 +166,8 @@ fn a_robot_on_a_long_way_stands_far_from_its_target_once_it_is_stopped() {
     in_parallel(cases.len(), |idx| {
         let (robot, breach) = cases[idx];
         let what = format!("{robot:?}, {breach:?}");
-        let mut cell = Cell::start(&SimOptions { seed: 12, robot, ..SimOptions::default() }, deadlines(LONG));
+        let options = bench::far_view(SimOptions { seed: 12, robot, ..SimOptions::default() });
+        let mut cell = Cell::start(&options, deadlines(LONG));
         cell.arm();
         cell.change_settings(|settings| settings.limits.transit_speed_mm_s = SPEED_MM_S);
         let target_mm = cell.set_out(&what);
@@ -231,7 +233,8 @@ fn run_schedule(seed: u64) -> (String, bool) {
     let mut cell = Cell::start(&options, deadlines(SHORT));
     cell.arm();
     cell.change_settings(|settings| settings.limits.transit_speed_mm_s = SPEED_MM_S);
-    let home_mm = cell.position_mm();
+    let drawing = cell.sim.truth.rough_flange_from_sensor;
+    cell.set_mounting(&drawing);
     for fault in faults {
         cell.sim.inject(fault);
     }
@@ -244,19 +247,16 @@ fn run_schedule(seed: u64) -> (String, bool) {
     assert!(usize::from(run.num_done) <= num_found, "{what}: {run:?}, but {num_found} found");
     let is_complete = run.num_done == NUM_STATIONS;
     assert!(is_complete || !cell.workbench.notices().is_empty(), "{what}: says nothing");
-    // A search steps some millimetres, a way to another station takes it further.
-    let is_away = (cell.position_mm() - home_mm).norm() > 40.0;
-    (if is_complete { "complete".to_owned() } else { name_of(&end) }, is_away)
+    (if is_complete { "complete".to_owned() } else { name_of(&end) }, cell.has_set_out)
 }
 
 #[test]
 fn random_faults_never_hang_it_and_lose_nothing() {
     let num = std::env::var("HANDEYE_FAULTS").ok().map_or(40, |num| num.parse().expect("a number of schedules"));
     let start = Instant::now();
-    let (ends, is_away): (Vec<_>, Vec<_>) = in_parallel(num, |seed| run_schedule(seed as u64)).into_iter().unzip();
+    let (ends, has_set_out): (Vec<_>, Vec<_>) = in_parallel(num, |seed| run_schedule(seed as u64)).into_iter().unzip();
     tell_counts(&ends, start);
-    let num_away = is_away.iter().filter(|is_away| **is_away).count();
-    println!("{num_away} of {num} went to another station");
-    // By their seeds it is about half of them.
-    assert!(num_away * 5 > num, "{num_away} of {num} went to another station");
+    let num_out = has_set_out.iter().filter(|has_set_out| **has_set_out).count();
+    println!("{num_out} of them set out to another station");
+    assert!(num_out * 3 > num, "{num_out} of {num} set out to another station");
 }

@@ -64,11 +64,6 @@ impl Case {
         matches!(self.spec.fault, Fault::SplitFrames | Fault::Slow | Fault::Silent | Fault::Garbage | Fault::Disconnect)
     }
 
-    /// Whether the search has captured already.
-    fn is_after_first_capture(&self) -> bool {
-        !matches!(self.moment, Moment::Moving | Moment::Phase(SearchPhase::First))
-    }
-
     /// Whether the fault may end so. Where the peak may have been known before it set in, it may have been found, too.
     pub fn admits(&self, end: &RoutineEnd) -> bool {
         let is_found = matches!(end, RoutineEnd::Searched(SearchEnd::Found { .. }));
@@ -84,14 +79,15 @@ impl Case {
             Fault::Disconnect => failed(|error| matches!(error, DeviceError::Closed { .. })),
             Fault::RobotRefuses => failed(|error| matches!(error, DeviceError::Refused { .. })),
             Fault::StaleProfile => matches!(end, RoutineEnd::StaleProfiles { .. }),
-            // A ball that was pushed before the first capture lies still from then on.
+            // After some steps the search sees two balls. With one of them in a single capture, or none, it finds the other:
+            // whether that is true is checked by the cell's truth.
             Fault::BallMoved => {
                 matches!(end, RoutineEnd::Searched(SearchEnd::ResidualGrew { .. }))
-                    || is_found && !self.is_after_first_capture()
+                    || is_found && self.moment != Moment::Phase(SearchPhase::Climb)
             }
-            // MAPPDK says no more than that it does not go.
+            // The program that serves MAPPDK ends with the remote mode.
             Fault::NotRemote if self.robot == RobotKind::FanucMappdk => {
-                failed(|error| matches!(error, DeviceError::Refused { .. }))
+                failed(|error| matches!(error, DeviceError::Closed { .. }))
             }
             Fault::NotRemote => {
                 matches!(end, RoutineEnd::NotAllowed(MotionRefusal::NotReady { .. }))
@@ -103,8 +99,8 @@ impl Case {
     /// Whether the robot can be told to stop, and says that it did.
     pub fn robot_takes_stop(&self) -> bool {
         let is_deaf = self.is_of_wire() && self.spec.device == SimDevice::Robot;
-        // In local control a script of ours is not run, neither the one that moves nor the one that stops.
-        let is_local = self.spec.fault == Fault::NotRemote && self.robot == RobotKind::UniversalRobots;
+        // Out of its remote mode only a bridge still does what we ask.
+        let is_local = self.spec.fault == Fault::NotRemote && self.robot != RobotKind::Bridge;
         !is_deaf && !is_local
     }
 
