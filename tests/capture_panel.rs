@@ -232,6 +232,44 @@ fn the_next_thing_is_the_primary_button() {
 }
 
 #[test]
+fn settings_in_use_cannot_be_changed() {
+    for (activity, num_asked) in [(Activity::Idle, 1), (Activity::Settling, 0)] {
+        let mut harness = Bench::new(CellView { activity, ..armed() }).harness();
+        harness.get_by_label(setting_words::LIMITS).click();
+        harness.run_steps(4);
+        harness.get_by_label(setting_words::WORKSPACE).click();
+        harness.run_steps(2);
+        assert!(harness.state().commands.len() == num_asked, "{activity:?}: {:?}", harness.state().commands);
+        assert_eq!(harness.query_by_label(setting_words::IN_USE).is_some(), num_asked == 0);
+    }
+}
+
+#[test]
+fn the_last_search_is_told_from_the_one_under_way() {
+    let found = SearchEnd::Found { peak_mm: 6.003, peak_std_mm: 0.021 };
+    let view = |activity, end| CellView { search: Some(Arc::new(search(end))), activity, run: Some(RUN), ..armed() };
+    for (activity, end, is_past) in [
+        (Activity::Moving, Some(found.clone()), true),
+        (Activity::Idle, Some(found), false),
+        (Activity::Settling, None, false),
+    ] {
+        let harness = Bench::new(view(activity, end)).harness();
+        let num_told = harness.query_all_by_label(words::LAST_STATION).count();
+        assert_eq!(num_told, if is_past { 2 } else { 0 }, "at the curve and at the boxes: {activity:?}");
+    }
+}
+
+#[test]
+fn a_slanted_travel_and_the_noise_of_repeats_are_told() {
+    let mut slanted = search(None);
+    slanted.curve = Some(CurveEstimate { peak_mm: 6.0, peak_std_mm: 0.02, curvature: 0.97 });
+    let view = CellView { search: Some(Arc::new(slanted)), repeat_std_mm: Some(0.0042), ..armed() };
+    let harness = Bench::new(view).harness();
+    harness.get_by_label_contains("c = 0.970");
+    harness.get_by_label(&words::repeat_noise("4.2"));
+}
+
+#[test]
 fn what_cannot_be_done_does_nothing() {
     let refused = CellView { proposal: Some(proposal(Some(MotionRefusal::NotArmed))), ..armed() };
     for (view, name) in [
@@ -257,6 +295,8 @@ fn a_broken_link_says_what_happened_and_when_it_is_tried_again() {
     let harness = Bench::new(CellView { robot, ..connected(Readiness::Ready) }).harness();
     harness.get_by_label_contains(&words::again_in(Duration::from_secs(4)));
     harness.get_by_label(&error.to_string());
+    let delay = harness.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay;
+    assert!(delay <= Duration::from_secs(1), "it counts down: {delay:?}");
 }
 
 #[test]

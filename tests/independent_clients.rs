@@ -6,9 +6,6 @@ use std::io::{self, Write as _};
 use std::path::Path;
 use std::process::Command;
 
-/// How `run.py` ends where a client could not be run.
-const SKIPPED: i32 = 3;
-
 /// What is skipped is said even where the output of tests that pass is not shown.
 fn say(text: &str) {
     writeln!(io::stderr(), "{text}").expect("written");
@@ -31,6 +28,6 @@ fn clients_of_others_are_satisfied() {
         }
     };
     say(&(String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr)));
-    let code = output.status.code().expect("an exit status");
-    assert!(code == 0 || code == SKIPPED, "a client found something; see above");
+    // Who asks for the clients and gets none of them must not take that for a success.
+    assert!(output.status.success(), "a client found something, or could not be run; see above");
 }

@@ -362,6 +362,104 @@ fn taking_a_station_back_while_it_is_measured_stops_the_robot_and_the_run() {
     assert!(bench.session().num_captures() > num_captures);
 }
 
+/// A slow search with some captures.
+fn searching(seed: u64, num_captures: usize) -> Bench {
+    let mut bench = Bench::practising(seed, SLOW).armed();
+    bench.cell(CellCommand::FindLargestArc);
+    bench.wait("some captures", |workbench| {
+        workbench.document().is_some_and(|document| document.session.num_captures() >= num_captures)
+    });
+    bench
+}
+
+#[test]
+fn a_part_of_a_station_taken_back_stops_the_robot_and_stays_in_the_history() {
+    let mut bench = searching(16, 2);
+    let rename = handeye::session::edit::CellValue::Label("first".to_owned());
+    let place = handeye::session::Place { station_idx: 0, capture_idx: 0 };
+    bench.workbench.apply(Command::Edit { edit: Edit::SetCells(vec![(place, rename)]), gesture: None });
+    let num_before = bench.session().num_captures();
+    bench.wait("two further captures", |workbench| {
+        workbench.document().is_some_and(|document| document.session.num_captures() >= num_before + 2)
+    });
+    let num_captures = bench.session().num_captures();
+    // The rename began another step, which the captures since are in.
+    bench.workbench.apply(Command::Undo);
+    assert!(bench.session().num_captures() < num_captures && bench.session().num_captures() > 0);
+    bench.wait_for_rest();
+    assert!(matches!(bench.last_end(), RoutineEnd::Stopped { .. }), "{:?}", bench.last_end());
+    bench.workbench.apply(Command::StepHistory(isize::MAX));
+    assert!(bench.session().num_captures() >= num_captures, "nothing is lost");
+}
+
+#[test]
+fn what_a_routine_was_begun_with_holds_to_its_end() {
+    let mut bench = searching(17, 2);
+    let before = bench.workbench.cell().settings;
+    bench.change_settings(|settings| {
+        settings.limits.max_speed_mm_s = 1.0;
+        settings.asks_before_motion = true;
+    });
+    assert!(bench.last_notice().contains("while the robot is at work"), "{}", bench.last_notice());
+    let after = bench.workbench.cell().settings;
+    assert_eq!(after.limits, before.limits);
+    assert!(after.asks_before_motion, "that concerns the next station");
+    bench.cell(CellCommand::Stop);
+    bench.wait_for_rest();
+    bench.change_settings(|settings| settings.limits.max_speed_mm_s = 1.0);
+    assert!((bench.workbench.cell().settings.limits.max_speed_mm_s - 1.0).abs() < f64::EPSILON);
+}
+
+#[test]
+fn another_document_is_not_armed() {
+    let mut bench = Bench::practising(18, FAST).armed();
+    bench.workbench.apply(Command::NewSession(Target::ball(10.0)));
+    assert!(!bench.workbench.cell().is_armed);
+}
+
+#[test]
+fn a_proposal_is_refused_where_its_search_would_leave_the_box() {
+    let mut bench = Bench::practising(19, FAST).armed();
+    bench.cell(CellCommand::FindLargestArc);
+    bench.wait_for_rest();
+    bench.cell(CellCommand::ProposeStation);
+    bench.wait("a proposal", |workbench| workbench.cell().proposal.is_some());
+    let proposal = bench.workbench.cell().proposal.clone().expect("waited for");
+    assert_eq!(proposal.refusal, None);
+    let ends = [
+        bench.workbench.cell().robot.latest.as_ref().expect("reports").base_from_flange.translation_mm(),
+        proposal.station.base_from_flange.translation_mm(),
+    ];
+    // Both ends of the way, and a step about them.
+    let min_mm = ends[0].inf(&ends[1]).add_scalar(-1.0).into();
+    let max_mm = ends[0].sup(&ends[1]).add_scalar(1.0).into();
+    bench.change_settings(|settings| settings.limits.workspace = Some(WorkspaceBox { min_mm, max_mm }));
+    bench.workbench.poll();
+    let refusal = |bench: &Bench| bench.workbench.cell().proposal.as_ref().expect("stays").refusal.clone();
+    assert!(matches!(refusal(&bench), Some(MotionRefusal::OutsideWorkspace { .. })), "{:?}", refusal(&bench));
+    bench.change_settings(|settings| settings.routine = StationRoutine::FixedPoint);
+    bench.workbench.poll();
+    assert_eq!(refusal(&bench), None, "a single profile needs no travel");
+    bench.cell(CellCommand::StartReplay);
+    assert_eq!(bench.workbench.cell().proposal, None, "the poses of a replay are not where the robot is");
+}
+
+#[test]
+fn the_last_search_stays_in_sight_on_the_way_to_the_next_station() {
+    let mut bench = Bench::practising(20, FAST).armed();
+    bench.cell(CellCommand::StartRun { num_stations: 2 });
+    bench.wait("the way to the second station", |workbench| {
+        let cell = workbench.cell();
+        cell.run.is_some_and(|run| run.num_done == 1) && cell.activity == Activity::Moving && cell.is_search_past()
+    });
+    bench.wait("its search", |workbench| {
+        let cell = workbench.cell();
+        cell.run.is_some_and(|run| run.num_done == 1) && cell.is_busy() && !cell.is_search_past()
+    });
+    bench.wait_for_rest();
+    assert!(!bench.workbench.cell().is_search_past());
+}
+
 #[test]
 fn a_recorded_session_plays_through_the_panel_and_changes_nothing() {
     let mut bench = Bench::practising(7, FAST).armed();

@@ -24,6 +24,11 @@ fn quick() -> SimOptions {
     SimOptions { time_scale: 50.0, ..SimOptions::default() }
 }
 
+/// A hundred profiles a second: few enough for a client to see all of them.
+fn unhurried() -> SimOptions {
+    SimOptions { time_scale: 0.1, ..SimOptions::default() }
+}
+
 fn connect(port: u16) -> TcpStream {
     let stream = TcpStream::connect(("127.0.0.1", port)).expect("a server");
     stream.set_read_timeout(Some(PATIENCE)).expect("a timeout");
@@ -112,11 +117,11 @@ fn settings_are_told_as_they_are_and_not_taken() {
             bytes.first_chunk().is_some_and(|prefix| bytes.len() >= 4 + u32::from_le_bytes(*prefix) as usize)
         })
     };
-    // The trigger mode of program 5: continuous. Its sampling: 100 Hz. A client polls as often as this says.
+    // The trigger mode of program 5: continuous. Its sampling: 1 kHz. A client polls as often as this says.
     let trigger_mode = "20000000 0100f000 00000000 14000000 31000000 00000000 01000000 15000100 00000000";
     assert_eq!(ask(trigger_mode)[17..], [&[0; 7][..], &[0, 0, 0, 0], &[0; 4]].concat());
     let sampling = "20000000 0100f000 00000000 14000000 31000000 00000000 01000000 15000200 000000cd";
-    assert_eq!(ask(sampling)[28..], [3, 0, 0, 0]);
+    assert_eq!(ask(sampling)[28..], [6, 0, 0, 0]);
     let write = "20000000 0100f000 00000000 14000000 32000000 01000000 15000100 00000000 01000000";
     assert_eq!(ask(write)[17], 0x41);
     assert_eq!(ask(trigger_mode)[28], 0, "what was refused is not set");
@@ -129,7 +134,7 @@ fn settings_are_told_as_they_are_and_not_taken() {
 #[test]
 fn the_high_speed_port_pushes_one_profile_after_the_other() {
     const PROFILE: usize = 2028;
-    let cell = SimCell::start(&quick()).expect("free ports");
+    let cell = SimCell::start(&unhurried()).expect("free ports");
     let port_of = |what: &str| cell.ports.iter().find(|(_, found)| found.contains(what)).expect("served").0;
     let mut stream = connect(port_of("high-speed"));
     let mut client = connect(cell.sensor_setup.endpoint.port);
@@ -155,6 +160,37 @@ fn the_high_speed_port_pushes_one_profile_after_the_other() {
     let note = hex("ffffffff 01000000");
     let rest = ask_until(&mut stream, b"", |bytes| bytes.ends_with(&note));
     assert_eq!((profiles.len() + rest.len() - note.len()) % PROFILE, 0);
+}
+
+#[test]
+fn a_stream_is_its_clients_own_and_ends_with_it() {
+    let cell = SimCell::start(&quick()).expect("free ports");
+    let stream_port = cell.ports.iter().find(|(_, what)| what.contains("high-speed")).expect("served").0;
+    let mut client = connect(cell.sensor_setup.endpoint.port);
+    let start = hex("18000000 0100f000 00000000 0c000000 a0000000 47000000 01000000");
+    let stop = hex("10000000 0100f000 00000000 04000000 48000000");
+    let note = hex("ffffffff 01000000");
+    let mut first = connect(stream_port);
+    // A stream is served to who was there when it was started: until bytes come nobody knows that the server has seen him.
+    let mut is_served = false;
+    first.set_nonblocking(true).expect("set");
+    while !is_served {
+        ask_until(&mut client, &start, |bytes| bytes.len() >= 28);
+        sleep(Duration::from_millis(20));
+        is_served = first.read(&mut [0; 64]).is_ok();
+    }
+    first.set_nonblocking(false).expect("set");
+    // Stopped and started at once: the note of the stop stands between the two.
+    ask_until(&mut client, &stop, |bytes| bytes.len() >= 28);
+    ask_until(&mut client, &start, |bytes| bytes.len() >= 28);
+    ask_until(&mut first, b"", |bytes| bytes.windows(note.len()).any(|window| window == note));
+    // The next client comes while that one runs and after it has gone without a stop: nothing of it is his.
+    let mut second = connect(stream_port);
+    sleep(Duration::from_millis(50));
+    drop(first);
+    sleep(Duration::from_millis(50));
+    second.set_read_timeout(Some(Duration::from_millis(100))).expect("a timeout");
+    assert!(second.read(&mut [0; 64]).is_err(), "profiles of another's stream");
 }
 
 #[test]
@@ -188,6 +224,12 @@ fn ports_keep_their_distances_and_a_taken_one_is_named() {
     let same = SimOptions { port_offset: Some(taken - 18735), ..quick() };
     let refusal = SimCell::start(&same).expect_err("taken").to_string();
     assert!(refusal.contains(&taken.to_string()) && refusal.contains("--port-offset"), "{refusal}");
+    // All but the page of a robot that is not read by it.
+    let offset = cell.robot_setup.endpoint.port - 18735;
+    drop(cell);
+    let _page = TcpListener::bind(("127.0.0.1", 80 + offset)).expect("free again");
+    let pageless = SimCell::start(&SimOptions { port_offset: Some(offset), ..quick() }).expect("the others are free");
+    assert!(pageless.ports.iter().all(|(port, _)| *port != 80 + offset));
     let folder = SimOptions { sensor: SensorKind::Folder, ..quick() };
     assert!(SimCell::start(&folder).expect_err("no protocol").to_string().contains("watched folder"));
 }
@@ -506,7 +548,7 @@ fn faults_of_the_cell_do_what_they_say() {
 
 #[test]
 fn profiles_are_counted_remembered_and_forgotten() {
-    let cell = SimCell::start(&quick()).expect("free ports");
+    let cell = SimCell::start(&unhurried()).expect("free ports");
     let mut client = connect(cell.sensor_setup.endpoint.port);
     let mut get = |position: u8, number: u32, count: u8, erase: u8| {
         let mut request = hex("20000000 0100f000 00000000 14000000 42000000 00000000");
@@ -520,7 +562,7 @@ fn profiles_are_counted_remembered_and_forgotten() {
         let counts: Vec<u32> = (0..usize::from(reply[40])).map(|idx| word(64 + idx * 2028 + 4)).collect();
         (word(28), word(32), word(36), counts)
     };
-    sleep(Duration::from_millis(10));
+    sleep(Duration::from_millis(60));
     let (newest, _, first, counts) = get(0, 0, 3, 0);
     assert_eq!((first, counts.len()), (newest - 2, 3));
     // The first profile of all has number 0 and count 1.

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::device::{
-    LinkState, MotionLimits, MotionRefusal, ProfileReading, RobotReport, RobotSetup, RoutineEnd, SearchReport,
-    SearchSettings, SensorSetup, SettleSettings,
+    LinkState, MotionLimits, MotionRefusal, ProfileReading, Readiness, RobotReport, RobotSetup, RoutineEnd,
+    SearchReport, SearchSettings, SensorSetup, SettleSettings,
 };
 use crate::plan::PlannedStation;
 
@@ -190,7 +190,7 @@ pub struct CellView {
     pub settings: CellSettings,
     /// What the routine is at.
     pub activity: Activity,
-    /// The search under way, or the last one.
+    /// The search under way, or the last one; see [`Self::is_search_past`].
     pub search: Option<Arc<SearchReport>>,
     /// Noise of a point of a profile along the range axis, by the repeats of the last capture, mm.
     pub repeat_std_mm: Option<f64>,
@@ -211,5 +211,29 @@ impl CellView {
     #[must_use]
     pub const fn is_busy(&self) -> bool {
         !matches!(self.activity, Activity::Idle)
+    }
+
+    /// Whether the search that is shown is that of the last station, while the next one has not begun.
+    #[must_use]
+    pub fn is_search_past(&self) -> bool {
+        self.is_busy() && self.search.as_ref().is_some_and(|search| search.end.is_some())
+    }
+
+    /// Whether the last routine ended without the robot's word that it stands: it may still be moving.
+    #[must_use]
+    pub fn is_stop_unconfirmed(&self) -> bool {
+        let is_unconfirmed = matches!(
+            self.last_end,
+            Some(RoutineEnd::Failed { robot_stopped, .. } | RoutineEnd::Stopped { robot_stopped })
+                if robot_stopped != Some(true)
+        );
+        let readiness = self.robot.latest.as_ref().map(|report| &report.readiness);
+        is_unconfirmed && self.robot.state != LinkState::Off && readiness != Some(&Readiness::ReadOnly)
+    }
+
+    /// Whether what is set before motion is in use by a routine, and stays as it is until that has ended.
+    #[must_use]
+    pub const fn are_settings_in_use(&self) -> bool {
+        !matches!(self.activity, Activity::Idle | Activity::Stopping)
     }
 }

@@ -63,6 +63,18 @@ pub enum DeviceError {
         /// What to do.
         remedy: String,
     },
+    /// The controller has looked at the target before it moved, and the arm cannot get there. Another target may do.
+    #[error("{device}: {request} was refused: {found}; {remedy}")]
+    OutOfReach {
+        /// The device's name.
+        device: &'static str,
+        /// What was asked.
+        request: String,
+        /// What it said.
+        found: String,
+        /// What to do.
+        remedy: String,
+    },
     /// The device is not in a state to do that.
     #[error("{device}: found {found}, needed {needed}; {remedy}")]
     NotReady {
@@ -116,6 +128,7 @@ impl DeviceError {
         matches!(
             self,
             Self::Refused { .. }
+                | Self::OutOfReach { .. }
                 | Self::NotReady { .. }
                 | Self::CannotMove { .. }
                 | Self::NotArrived { .. }
@@ -126,7 +139,10 @@ impl DeviceError {
     /// Whether the same attempt may succeed later although nobody has done anything about it.
     #[must_use]
     pub const fn may_pass_by_itself(&self) -> bool {
-        !matches!(self, Self::Refused { .. } | Self::NotReady { .. } | Self::CannotMove { .. })
+        !matches!(
+            self,
+            Self::Refused { .. } | Self::OutOfReach { .. } | Self::NotReady { .. } | Self::CannotMove { .. }
+        )
     }
 }
 

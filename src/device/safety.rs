@@ -130,7 +130,7 @@ pub enum MotionRefusal {
 }
 
 /// No flange of a robot should turn faster under this program, whatever is set, degrees a second.
-const MOST_ROTATION_SPEED_DEG_S: f64 = 90.0;
+pub const MOST_ROTATION_SPEED_DEG_S: f64 = 90.0;
 
 /// Permission to move, given by the arm switch at a pose. Without one nothing can be checked, and so nothing be sent.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -157,8 +157,10 @@ fn mark(workbench: &Workbench, selection: &Selection, num_pose_remarks: usize, s
     match step {
         Step::Session => Mark::Fine("✔".to_owned()),
         Step::Capture => Mark::None,
-        // Nothing is no reason for a tick.
-        Step::Arcs | Step::Poses | Step::Diagnosis if document.session.stations.is_empty() => Mark::None,
+        // Nothing is no reason for a tick, nor for a cross.
+        Step::Arcs | Step::Poses | Step::Compare | Step::Diagnosis if document.session.stations.is_empty() => {
+            Mark::None
+        }
         Step::Arcs => counted(super::poses::model::num_refused(&document.session, results)),
         Step::Poses => counted(num_pose_remarks),
         Step::Compare => match results.method(selection.method).map(|result| &result.outcome) {
@@ -183,5 +185,31 @@ fn mark(workbench: &Workbench, selection: &Selection, num_pose_remarks: usize, s
                 counted(diagnosis.findings.len())
             }
         }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+    use std::time::{Duration, Instant};
+
+    use super::*;
+    use crate::app::Command;
+    use crate::session::Target;
+
+    #[test]
+    fn a_session_without_stations_is_no_failure() {
+        let mut workbench = Workbench::new(Arc::new(|| {}));
+        workbench.apply(Command::NewSession(Target::ball(15.0)));
+        let start = Instant::now();
+        while workbench.results().is_none() {
+            assert!(start.elapsed() < Duration::from_mins(2), "it is solved, or refused");
+            workbench.poll();
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        let selection = Selection::default();
+        for step in Step::ALL.into_iter().filter(|step| *step != Step::Session) {
+            assert_eq!(mark(&workbench, &selection, 0, step), Mark::None, "{}", step.name());
+        }
     }
 }

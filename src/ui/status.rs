@@ -13,7 +13,7 @@ use crate::text::shell as words;
 use crate::text::start::captures as captures_text;
 
 use super::actions::Action;
-use super::capture::{self, model::is_running};
+use super::capture::{self, model::may_be_moving};
 use super::rail::Step;
 use super::{theme, widgets};
 
@@ -32,7 +32,7 @@ pub fn show(ui: &mut Ui, workbench: &Workbench, step: Step, actions: &mut Vec<Ac
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             // The capture step has a larger one of its own.
-            if step != Step::Capture && is_running(workbench.cell()) {
+            if step != Step::Capture && may_be_moving(workbench.cell()) {
                 stop(ui, workbench, commands);
             }
             progress_or_summary(ui, workbench, commands);

@@ -19,6 +19,8 @@ pub const ROW_HEIGHT: f32 = 24.0;
 pub const RADIUS: u8 = 4;
 /// Distance between cards, and from a card's border to its contents, points.
 pub const GAP: f32 = 12.0;
+/// How strongly that is drawn which was, but is not any more.
+pub const PAST_OPACITY: f32 = 0.5;
 /// Size of small text, points.
 pub const SMALL_SIZE: f32 = 11.5;
 /// Size of ordinary text, points.

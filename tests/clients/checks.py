@@ -177,7 +177,7 @@ def ljv_check(offset):
     reply = client.ask_raw(bytes.fromhex("14000000 0100f000 00000000 08000000 39000000 07000000"))
     golden = bytes.fromhex("18000000 010000f0 00000000 0c000000 39000000 00000000 07000000")
     expect(reply == golden, f"change of program: {reply.hex(' ', 4)}")
-    golden = bytes.fromhex("20000000 0100f000 00000000 14000000 42000000 00000000 00000000 00000000 01010000")
+    golden = bytes.fromhex("20000000 0100f000 00000000 14000000 42000000 00000000 00000000 01000000 01010000")
     counts, num_valid = [], 0
     while len(counts) < 20:
         reply = client.ask_raw(golden)

@@ -4,8 +4,8 @@
     python3 tests/clients/run.py target/debug/handeye [FOLDER]
 
 Makes a virtual environment in FOLDER (a temporary one if none is named), installs the clients of requirements.txt there,
-starts `handeye cell` for each protocol, and runs checks.py. Ends with 0 if all is well, 1 if a check failed, and 3 with a line
-"skipped: ..." if nothing could be checked.
+starts `handeye cell` for each protocol, and runs checks.py. Ends with 0 if all is well, 1 if a check failed or a cell did not
+start, and 3 with lines "skipped: ..." if something could not be checked: no clients, or no free ports.
 """
 
 import os
@@ -25,8 +25,16 @@ CHECK_TIMEOUT_S = 120
 OFFSETS = range(7000, 30000, 1777)
 
 
+# What a cell says of itself when it ends because of its ports.
+PORT_PROBLEM = "--port-offset"
+
+
 class Skipped(Exception):
     """Why nothing can be checked."""
+
+
+class Failed(Exception):
+    """What is wrong with a cell."""
 
 
 def python_with_clients(folder):
@@ -60,6 +68,8 @@ class Cell:
             if problem is None:
                 return
             self.end()
+            if PORT_PROBLEM not in problem:
+                raise Failed(f"a cell with {robot} and {sensor} did not start: {problem}")
             problems.append(problem)
         raise Skipped(f"no cell with {robot} and {sensor} could be started: {problems[-1]}")
 
@@ -101,6 +111,9 @@ def check(python, program, robot, sensor, names, offsets=OFFSETS):
             return subprocess.run(command, timeout=CHECK_TIMEOUT_S).returncode == 0
     except subprocess.TimeoutExpired:
         print(f"failed: {', '.join(names)}: no end within {CHECK_TIMEOUT_S} s", flush=True)
+        return False
+    except Failed as reason:
+        print(f"failed: {', '.join(names)}: {reason}", flush=True)
         return False
     except Skipped as reason:
         print(f"skipped: {', '.join(names)}: {reason}", flush=True)

@@ -106,6 +106,8 @@ fn scripts_are_read_as_written_and_as_others_write_them() {
     assert_eq!(Program::parse(text), Ok(step));
     for (line, expected) in [
         ("stopl(2.5)", Statement::StopL { deceleration_m_s2: 2.5 }),
+        ("set_tcp(p[0.1,-0.2,0.3,0,2.5,0])", Statement::SetTcp { offset: pose }),
+        ("sync()", Statement::Sync),
         ("stopj( 4 )", Statement::StopJ { deceleration_rad_s2: 4.0 }),
         (
             "movel(p[0.1,-0.2,0.3,0,2.5,0],0.5,0.1)",
@@ -118,7 +120,16 @@ fn scripts_are_read_as_written_and_as_others_write_them() {
     ] {
         assert_eq!(Program::parse(line), Ok(Program::single(expected)), "{line}");
     }
-    for line in ["movel(p[1,2,3],a=1)", "movel(p[0,0,0,0,0,nan])", "powerdown()", "movel", "def f(x):\nend\n"] {
+    for line in [
+        "movel(p[1,2,3],a=1)",
+        "movel(p[0,0,0,0,0,nan])",
+        // The controller would solve for the joints, or for the pose; metres are no angles.
+        "movej(p[0.1,-0.2,0.3,0,2.5,0])",
+        "movel([0,1,2,3,4,5])",
+        "powerdown()",
+        "movel",
+        "def f(x):\nend\n",
+    ] {
         assert!(Program::parse(line).is_err(), "{line}");
     }
     let two = b"\nstopl(1)\ndef f():\n  stopl(2)\nend\n";
@@ -126,6 +137,14 @@ fn scripts_are_read_as_written_and_as_others_write_them() {
     assert_eq!(Program::len_of_first(&two[10..]), Ok(Some(two.len() - 10)));
     assert_eq!(Program::len_of_first(&two[10..two.len() - 1]), Ok(None));
     assert!(Program::len_of_first(&b" ".repeat(100_000)).is_err());
+    // The end of a block inside is not that of the program: what stands behind it would run by itself.
+    let nested = b"def p():\n if x:\n  while(y):\n   movel(A)\n  end\n elif z:\n end\n movel(B)\nend # of p\n";
+    assert_eq!(Program::len_of_first(nested), Ok(Some(nested.len())));
+    for len in 0..nested.len() {
+        assert_eq!(Program::len_of_first(&nested[..len]), Ok(None));
+    }
+    // Not the words themselves.
+    assert_eq!(Program::len_of_first(b"iffy()\nend_of()\n"), Ok(Some(7)));
 }
 
 #[test]

@@ -44,6 +44,8 @@ pub struct SimOptions {
     pub head: Head,
     /// Radius of the ball, mm.
     pub radius_mm: f64,
+    /// The tool point that the operator has made active; only Universal Robots go by it.
+    pub flange_from_tcp: Rigid,
     /// Whether poses and profiles have noise, and profiles lost points.
     pub is_noisy: bool,
     /// What goes wrong.
@@ -60,6 +62,7 @@ impl Default for SimOptions {
             time_scale: 1.0,
             head: Head::default(),
             radius_mm: 15.0,
+            flange_from_tcp: Rigid::identity(),
             is_noisy: true,
             faults: Vec::new(),
         }

@@ -11,6 +11,8 @@ use super::fault::SimDevice;
 use super::net::{Clients, Service, bind};
 use super::{DEVICE, SimOptions, server};
 
+/// Where a FANUC serves its pages.
+const PAGE_PORT: u16 = 80;
 /// Offsets that are tried where any ports will do.
 const NUM_TRIES: usize = 200;
 /// Ports below belong to the system.
@@ -51,7 +53,7 @@ fn of_robot(robot: RobotKind) -> Vec<PortPlan> {
         RobotKind::FanucMappdk | RobotKind::FanucPage => vec![
             one_client(18735, "FANUC MAPPDK server", server::mappdk::serve),
             one_client(18736, "FANUC MAPPDK logger", server::mappdk::serve),
-            port(80, "FANUC web pages (CURPOS.DG, PRGSTATE.DG)", server::curpos::serve),
+            port(PAGE_PORT, "FANUC web pages (CURPOS.DG, PRGSTATE.DG)", server::curpos::serve),
         ],
         RobotKind::UniversalRobots => vec![
             port(30004, "Universal Robots RTDE", server::ur_rtde::serve),
@@ -114,8 +116,12 @@ fn bind_at(plans: &[PortPlan], offset: i32) -> Result<Vec<Bound>, DeviceError> {
         let port = u16::try_from(wanted).map_err(|_| failed(wanted, "there is no such port".to_owned()))?;
         match bind(port) {
             Ok(listener) => bound.push((port, listener, *plan)),
-            // Ports below 1024 belong to the system: a robot's page is worth no privileges where moves are asked for.
-            Err(error) if error.kind() == ErrorKind::PermissionDenied && !plan.is_main => {}
+            // Ports below 1024 belong to the system, and there many a computer has a page of its own: that of a robot is not
+            // worth a refusal where moves are asked for.
+            Err(error)
+                if matches!(error.kind(), ErrorKind::PermissionDenied | ErrorKind::AddrInUse)
+                    && plan.default_port == PAGE_PORT
+                    && !plan.is_main => {}
             Err(error) => return Err(failed(wanted, error.to_string())),
         }
     }

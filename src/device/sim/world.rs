@@ -17,8 +17,9 @@ use super::layout::Layout;
 use super::motion::{Motion, Speed, Way};
 use super::{SimOptions, SimTruth};
 
-/// Profiles a second of the cell's own clock.
-const TRIGGERS_PER_S: f64 = 100.0;
+/// Profiles a second of the cell's own clock. Faster than clients ask: one that reads and forgets, or two of them, would
+/// else be told most of the time that there is none.
+const TRIGGERS_PER_S: f64 = 1000.0;
 /// Motions that are remembered, for profiles that were taken before the last one.
 const MAX_MOTIONS: usize = 16;
 /// Where the ball is pushed by [`Fault::BallMoved`], mm.
@@ -62,6 +63,8 @@ pub enum Order {
     Straight {
         /// Where to.
         base_from_flange: Rigid,
+        /// The point that goes straight, and at the speed.
+        flange_from_tcp: Rigid,
         /// How fast.
         speed: Speed,
     },
@@ -86,6 +89,11 @@ pub enum Order {
 pub enum Step {
     /// Goes somewhere, and waits until it is there.
     Go(Order),
+    /// Makes another tool point the active one.
+    SetTcp {
+        /// Where it is.
+        flange_from_tcp: Rigid,
+    },
     /// Sets a register.
     SetRegister {
         /// Which.
@@ -103,11 +111,13 @@ pub const NUM_REGISTERS: usize = 48;
 pub struct ArmReport {
     /// The flange as commanded: its noise is what the controller does not know.
     pub base_from_flange: Rigid,
+    /// The tool point that is active.
+    pub flange_from_tcp: Rigid,
     /// Joint angles of the mechanism, rad.
     pub joints: Joints,
     /// The same as the controller shows them, degrees.
     pub shown_deg: [f64; 6],
-    /// How fast the flange goes, in the base, mm/s.
+    /// How fast the tool point goes, in the base, mm/s.
     pub velocity_mm_s: Vec3,
     /// How fast it turns, in the base, rad/s.
     pub turning_rad_s: Vec3,
@@ -119,6 +129,14 @@ pub struct ArmReport {
     pub registers: [i32; NUM_REGISTERS],
     /// Since the cell began, s of its own clock.
     pub time_s: f64,
+}
+
+impl ArmReport {
+    /// Where the tool point is.
+    #[must_use]
+    pub fn base_from_tcp(&self) -> Rigid {
+        self.base_from_flange * self.flange_from_tcp
+    }
 }
 
 /// A motion, and how far the flange truly is from where the controller says.
@@ -153,6 +171,7 @@ struct State {
     /// What is left of the program that runs, and when that began.
     program: VecDeque<Step>,
     program_at_s: f64,
+    flange_from_tcp: Rigid,
     registers: [i32; NUM_REGISTERS],
     pose_noise: Random,
     faults: FaultPlan,
@@ -168,8 +187,16 @@ struct Profiler {
     stale_at: Option<u32>,
     /// The program that is active.
     program: u8,
-    /// The first profile of the high-speed stream that runs.
-    stream_from: Option<u32>,
+    stream: Stream,
+}
+
+/// The high-speed stream that was started last.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stream {
+    /// Which it is: a client that has been served one is not served another's.
+    pub number: u64,
+    /// Its first profile; `None` once it was stopped.
+    pub from: Option<u32>,
 }
 
 /// The arm, the ball, the profiler.
@@ -215,6 +242,7 @@ impl World {
                 past: VecDeque::new(),
                 program: VecDeque::new(),
                 program_at_s: 0.0,
+                flange_from_tcp: options.flange_from_tcp,
                 registers: [0; NUM_REGISTERS],
                 pose_noise: Random::new(options.seed, stream::POSE),
                 faults: FaultPlan::new(&options.faults),
@@ -253,9 +281,12 @@ impl World {
         let is_moving = time_s < motion.end_s();
         let base_from_flange = motion.pose_at(&self.layout.chain, time_s);
         let before = motion.pose_at(&self.layout.chain, time_s - SPEED_OVER_S);
+        let flange_from_tcp = state.flange_from_tcp;
+        let [tcp, tcp_before] = [base_from_flange, before].map(|flange| (flange * flange_from_tcp).translation.vector);
         ArmReport {
             base_from_flange,
-            velocity_mm_s: (base_from_flange.translation.vector - before.translation.vector) / SPEED_OVER_S,
+            flange_from_tcp,
+            velocity_mm_s: (tcp - tcp_before) / SPEED_OVER_S,
             turning_rad_s: so3::log(&(base_from_flange.rotation * before.rotation.inverse())) / SPEED_OVER_S,
             joints,
             shown_deg: self.layout.chain.shown_deg(&joints),
@@ -264,6 +295,13 @@ impl World {
             registers: state.registers,
             time_s,
         }
+    }
+
+    /// Where the flange is at joint angles as the controller shows them, degrees.
+    #[must_use]
+    pub fn flange_at(&self, shown_deg: [f64; 6]) -> Rigid {
+        let chain = &self.layout.chain;
+        chain.base_from_flange(&chain.joints_from_shown_deg(shown_deg))
     }
 
     /// Sends the arm off from where it is, and says after how long, in real time, it will have arrived.
@@ -303,6 +341,7 @@ impl World {
                         state.program.clear();
                     }
                 }
+                Some(Step::SetTcp { flange_from_tcp }) => state.flange_from_tcp = flange_from_tcp,
                 Some(Step::SetRegister { register, value }) => {
                     if let Some(place) = state.registers.get_mut(usize::from(register)) {
                         *place = value;
@@ -324,8 +363,8 @@ impl World {
         let chain = &self.layout.chain;
         let joints = state.leg.motion.joints_at(time_s);
         let (way, cruise_s) = match *order {
-            Order::Straight { base_from_flange, speed } => {
-                let way = Way::straight(chain, &joints, &base_from_flange)?;
+            Order::Straight { base_from_flange, flange_from_tcp, speed } => {
+                let way = Way::straight(chain, &joints, &base_from_flange, &flange_from_tcp)?;
                 let cruise_s = way.cruise_s(speed, 1.0);
                 (way, cruise_s)
             }
@@ -405,15 +444,24 @@ impl World {
         self.now().0.profiler.program = program;
     }
 
-    /// The first profile of the high-speed stream; `None` while none runs.
+    /// The high-speed stream that was started last.
     #[must_use]
-    pub fn stream_from(&self) -> Option<u32> {
-        self.now().0.profiler.stream_from
+    pub fn stream(&self) -> Stream {
+        self.now().0.profiler.stream
     }
 
-    /// Starts that stream from a profile on, or ends it.
-    pub fn set_stream(&self, from: Option<u32>) {
-        self.now().0.profiler.stream_from = from;
+    /// Starts another from a profile on.
+    pub fn start_stream(&self, from: u32) {
+        let stream = &mut self.now().0.profiler.stream;
+        *stream = Stream { number: stream.number + 1, from: Some(from) };
+    }
+
+    /// Ends the stream of a number, unless another has taken its place.
+    pub fn end_stream(&self, number: u64) {
+        let stream = &mut self.now().0.profiler.stream;
+        if stream.number == number {
+            stream.from = None;
+        }
     }
 
     /// The profile of a count; the same count gives the same profile.

@@ -54,6 +54,11 @@ pub const BALL_RADIUS_LINE: &str = "l = R";
 pub const MEASURED: &str = "measured";
 /// Legend of the fitted curve.
 pub const FITTED: &str = "√(R² − (y − y₀)²)";
+/// The same where the steps go across the laser plane at a slant.
+#[must_use]
+pub fn fitted_at_slant(curvature: f64) -> String {
+    format!("√(R² − c (y − y₀)²), c = {curvature:.3}")
+}
 /// Title of the strip at the bottom.
 pub const RULE_AND_CURVE: &str = "Published rule and whole curve";
 /// A sweep that does not reach the largest arc.

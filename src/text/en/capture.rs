@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::device::{Readiness, RobotKind, RoutineEnd, SearchPhase, SensorKind};
+use crate::device::{Readiness, RobotKind, SearchPhase, SensorKind};
 
 /// Menu.
 pub const MENU: &str = "Cell";
@@ -142,7 +142,11 @@ pub const fn sensor_kind_hint(kind: SensorKind) -> &'static str {
 /// When a broken link is tried again.
 #[must_use]
 pub fn again_in(wait: Duration) -> String {
-    format!("Tried again in {} s.", wait.as_secs_f64().ceil())
+    if wait.is_zero() {
+        "Tried again now.".to_owned()
+    } else {
+        format!("Tried again in {} s.", wait.as_secs_f64().ceil())
+    }
 }
 /// A broken link that only a person can mend.
 pub const NOT_AGAIN: &str = "Mend it, then connect again.";
@@ -525,42 +529,15 @@ pub mod now {
     pub const SETTINGS: &str = "Some settings at the left cannot be: they are marked.";
 }
 
-/// How a routine ended: whether well, and in words.
+/// A single profile was captured.
+pub const CAPTURED: &str = "Captured.";
+/// Noise of a point by the profiles that were averaged.
 #[must_use]
-pub fn routine_end(end: &RoutineEnd) -> (bool, String) {
-    let robot = |stopped: Option<bool>| match stopped {
-        Some(true) => "the robot took the stop",
-        Some(false) => "the robot did not take the stop: use the emergency stop",
-        None => "whether the robot stands could not be told: look at it",
-    };
-    match end {
-        RoutineEnd::Done => (true, "Captured.".to_owned()),
-        RoutineEnd::Searched(end) => (end.is_found(), sentence(&end.to_string())),
-        RoutineEnd::NotAllowed(refusal) => (false, sentence(&refusal.to_string())),
-        RoutineEnd::NeverStill { moved_mm: None } => {
-            (false, "The robot never stood still, as its controller says. Wait longer after a move.".to_owned())
-        }
-        RoutineEnd::NeverStill { moved_mm: Some(moved_mm) } => (
-            false,
-            format!(
-                "The robot never stood still: {moved_mm:.3} mm between two poses. Wait longer after a move, or allow more."
-            ),
-        ),
-        RoutineEnd::StaleProfiles { trigger_count } => (
-            false,
-            format!(
-                "No profile came after the move (trigger count stays at {trigger_count}). Check the profiler's trigger."
-            ),
-        ),
-        RoutineEnd::Failed { error, robot_stopped: Some(true) } => {
-            (false, format!("{} – no move is under way.", sentence(&error.to_string())))
-        }
-        RoutineEnd::Failed { error, robot_stopped } => {
-            (false, format!("{} – {}.", sentence(&error.to_string()), robot(*robot_stopped)))
-        }
-        RoutineEnd::Stopped { robot_stopped } => (false, format!("Stopped; {}.", robot(*robot_stopped))),
-    }
+pub fn repeat_noise(std_um: &str) -> String {
+    format!("Point noise by the repeats: {std_um} µm")
 }
+/// What is shown is of the station before.
+pub const LAST_STATION: &str = "last station";
 
 /// An error's words as a sentence of their own.
 #[must_use]

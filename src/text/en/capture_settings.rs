@@ -11,6 +11,8 @@ pub const CAPTURES: &str = "Captures";
 /// Section.
 pub const MOUNTING: &str = "Rough mounting";
 
+/// While a routine runs.
+pub const IN_USE: &str = "In use: they can be changed again once the robot is not at work.";
 /// Field: which axes.
 pub const FRAME: &str = "Axes of";
 /// Choice.
@@ -128,6 +130,8 @@ pub mod problem {
     pub const TRANSIT_TOO_FAST: &str = "The speed to a station is above the speed cap.";
     /// Fast search.
     pub const SEARCH_TOO_FAST: &str = "The speed of a step is above the speed cap.";
+    /// Fast turning.
+    pub const TURNS_TOO_FAST: &str = "The turning cap is above all that is ever allowed: lower it.";
     /// A step longer than a move may be.
     pub const STEP_TOO_LONG: &str = "A step is longer than the longest move.";
     /// A step as long as the ball.

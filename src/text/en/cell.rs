@@ -13,6 +13,9 @@ pub const NOT_A_BALL: &str =
     "nothing was captured: the open session's target is no ball. Begin a session for a ball, then capture again";
 /// One thing at a time.
 pub const BUSY: &str = "the cell is at work: stop it first, or wait until it has ended";
+/// What holds for a routine holds to its end.
+pub const SETTINGS_IN_USE: &str =
+    "the settings of motion and captures stay as they are while the robot is at work: stop it, then change them";
 /// There is no robot to ask.
 pub const NO_ROBOT: &str = "no robot is connected: connect one first";
 /// There is no profiler to ask.
@@ -53,10 +56,10 @@ pub const PRACTICE_ROBOT: &str = "simulated FANUC LR Mate 200iD";
 /// The simulated profiler.
 pub const PRACTICE_SENSOR: &str = "simulated Keyence LJ-V7060";
 
-/// How a routine ended that did not do what it was asked.
+/// Why a routine did not do what it was asked; `None` if it did.
 #[must_use]
-pub fn routine_ended(station: &str, num_captures: usize, end: &RoutineEnd) -> Option<String> {
-    let reason = match end {
+pub fn reason_of_end(end: &RoutineEnd) -> Option<String> {
+    Some(match end {
         RoutineEnd::Done => return None,
         RoutineEnd::Searched(end) if end.is_found() => return None,
         RoutineEnd::Searched(end) => end.to_string(),
@@ -73,10 +76,16 @@ pub fn routine_ended(station: &str, num_captures: usize, end: &RoutineEnd) -> Op
         ),
         RoutineEnd::Failed { error, robot_stopped: Some(true) } => format!("{error}. No move is under way"),
         RoutineEnd::Failed { error, robot_stopped } => format!("{error}. {}", stop_taken(*robot_stopped)),
-        RoutineEnd::Stopped { robot_stopped: Some(true) } if num_captures == 0 => return None,
         RoutineEnd::Stopped { robot_stopped } => format!("stopped on request. {}", stop_taken(*robot_stopped)),
-    };
+    })
+}
+
+/// The same with what is kept of the station; `None` where there is nothing to tell.
+#[must_use]
+pub fn routine_ended(station: &str, num_captures: usize, end: &RoutineEnd) -> Option<String> {
+    let reason = reason_of_end(end)?;
     Some(match num_captures {
+        0 if matches!(end, RoutineEnd::Stopped { robot_stopped: Some(true) }) => return None,
         0 => reason,
         _ => format!("{station}: {reason}. Its {num_captures} capture{} are kept", plural(num_captures)),
     })

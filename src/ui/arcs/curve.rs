@@ -121,9 +121,12 @@ fn entries(ui: &Ui, shown: &Curve<'_>) -> Vec<LegendEntry> {
         color: theme::palette(ui).text,
         text: text::MEASURED.to_owned(),
     }];
-    if shown.peak.is_some() {
+    if let Some(peak) = shown.peak {
         let color = theme::method_color(Method::BallMaxArc);
-        entries.push(LegendEntry { glyph: LegendGlyph::Line, color, text: text::FITTED.to_owned() });
+        // Along the laser's normal the factor is 1, and not written.
+        let is_along_normal = (peak.curvature - 1.0).abs() < 0.0005;
+        let text = if is_along_normal { text::FITTED.to_owned() } else { text::fitted_at_slant(peak.curvature) };
+        entries.push(LegendEntry { glyph: LegendGlyph::Line, color, text });
     }
     entries
 }

@@ -1,5 +1,7 @@
 //! The links: which driver, where, how it is; and the badge of the practice.
 
+use std::time::Duration;
+
 use egui::{Button, ComboBox, DragValue, Frame, Margin, Response, Role, TextEdit, Ui, WidgetInfo, vec2};
 
 use crate::app::cell::CellCommand;
@@ -15,11 +17,20 @@ use super::panel::Desk;
 
 /// Shows the cards.
 pub fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
-    if desk.view.cell.is_practice {
+    let cell = desk.view.cell;
+    if [&cell.robot.state, &cell.sensor.state].iter().any(|state| is_waiting(state)) {
+        // The time until the next attempt counts down.
+        ui.ctx().request_repaint_after(Duration::from_secs(1));
+    }
+    if cell.is_practice {
         practice(ui, desk);
     }
     robot(ui, desk);
     profiler(ui, desk);
+}
+
+const fn is_waiting(state: &LinkState) -> bool {
+    matches!(state, LinkState::Failed { retry_in: Some(_), .. })
 }
 
 fn practice(ui: &mut Ui, desk: &mut Desk<'_>) {

@@ -124,12 +124,20 @@ impl super::panel::CaptureState {
 
 fn curve_card(ui: &mut Ui, height: f32, desk: &mut Desk<'_>) {
     let ball_radius_mm = desk.view.ball_radius_mm();
+    let is_past = desk.view.cell.is_search_past();
     card_with_height(
         ui,
         words::RADIUS_AGAINST_STEP,
         height,
-        |_| {},
         |ui| {
+            if is_past {
+                ui.label(theme::dim(ui, words::LAST_STATION));
+            }
+        },
+        |ui| {
+            if is_past {
+                ui.multiply_opacity(theme::PAST_OPACITY);
+            }
             let (Some(search), Some(ball_radius_mm)) = (&desk.view.cell.search, ball_radius_mm) else {
                 return nothing(ui, words::NO_SEARCH);
             };

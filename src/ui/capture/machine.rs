@@ -25,13 +25,21 @@ const GAP: f32 = 22.0;
 /// Shows the card.
 pub fn show(ui: &mut Ui, desk: &Desk<'_>) {
     let search = desk.view.cell.search.as_deref();
+    let is_past = desk.view.cell.is_search_past();
     let right = |ui: &mut Ui| {
         let Some(search) = search else { return };
+        if is_past {
+            ui.label(theme::dim(ui, words::LAST_STATION));
+            return;
+        }
         let travelled_mm = search.points.last().map_or(0.0, |point| point.travelled_mm);
         let words = words::search_progress(search.points.len(), &fixed(travelled_mm, 2));
         ui.label(theme::dim(ui, words));
     };
     card_with_height(ui, words::SEARCH, HEIGHT, right, |ui| {
+        if is_past {
+            ui.multiply_opacity(theme::PAST_OPACITY);
+        }
         let states = boxes(search);
         let area = ui.available_rect_before_wrap().shrink2(vec2(theme::GAP, 0.0));
         let row = Rect::from_min_size(area.min + vec2(0.0, 10.0), vec2(area.width(), BOX_HEIGHT));

@@ -3,6 +3,7 @@
 use crate::app::Workbench;
 use crate::app::cell::{Activity, CellCommand, CellSettings, CellView};
 use crate::calibrate::SweepPoint;
+use crate::device::safety::MOST_ROTATION_SPEED_DEG_S;
 use crate::device::search::SearchPoint;
 use crate::device::{LinkState, Readiness, RobotReport, SearchPhase, SearchReport};
 use crate::geometry::{Base, Flange, PoseNotation, Transform};
@@ -75,6 +76,12 @@ impl<'a> View<'a> {
 #[must_use]
 pub fn is_running(cell: &CellView) -> bool {
     cell.is_busy() || cell.run.is_some_and(|run| run.is_paused || run.is_asking)
+}
+
+/// Whether there is something to stop: a robot that did not say that it stands may still be moving.
+#[must_use]
+pub fn may_be_moving(cell: &CellView) -> bool {
+    is_running(cell) || cell.is_stop_unconfirmed()
 }
 
 /// Whether a run has measured all that it was to.
@@ -177,7 +184,12 @@ fn next_while_running(view: &View<'_>) -> Option<Next> {
     }
     if let Some(run) = cell.run {
         if run.is_asking {
-            return Some(Next::command(words::now::ACCEPT, words::ACCEPT, CellCommand::AcceptProposal));
+            let is_refused = cell.proposal.as_ref().is_some_and(|proposal| proposal.refusal.is_some());
+            return Some(if is_refused {
+                Next::command(words::now::SKIP, words::ANOTHER, CellCommand::SkipProposal)
+            } else {
+                Next::command(words::now::ACCEPT, words::ACCEPT, CellCommand::AcceptProposal)
+            });
         }
         if run.is_paused && !cell.is_busy() {
             return Some(Next::command(words::now::RESUME, words::RESUME, CellCommand::ResumeRun));
@@ -507,6 +519,8 @@ pub fn problems(settings: &CellSettings, ball_radius_mm: f64, robot: Option<&Rob
     check(longest_step_mm > limits.max_move_mm, problem::STEP_TOO_LONG);
     check(limits.transit_speed_mm_s > limits.max_speed_mm_s, problem::TRANSIT_TOO_FAST);
     check(limits.search_speed_mm_s > limits.max_speed_mm_s, problem::SEARCH_TOO_FAST);
+    // Settings that were kept may be from a time when more was allowed.
+    check(limits.max_rotation_speed_deg_s > MOST_ROTATION_SPEED_DEG_S, problem::TURNS_TOO_FAST);
     if let Some(workspace) = &limits.workspace {
         let sides = || workspace.min_mm.iter().zip(&workspace.max_mm);
         let is_empty = sides().any(|(min, max)| min >= max);

@@ -7,7 +7,8 @@ use super::*;
 use crate::app::cell::{LinkView, LiveProfile, Proposal, ReplayView, RoughMounting, RunView};
 use crate::device::search::CurveEstimate;
 use crate::device::{
-    DeviceError, Endpoint, ProfileReading, RobotKind, RobotSetup, SearchEnd, SensorKind, SensorSetup, WorkspaceBox,
+    DeviceError, Endpoint, ProfileReading, RobotKind, RobotSetup, RoutineEnd, SearchEnd, SensorKind, SensorSetup,
+    WorkspaceBox,
 };
 use crate::fit::{ArcOptions, ArcRefusal, extract_arc};
 use crate::geometry::{PoseConvention, Profile, Vec3};
@@ -197,6 +198,7 @@ fn wrong_settings_are_told_and_keep_the_robot_still() {
     wrong.search.max_travel_mm = 30.0;
     wrong.limits.max_move_mm = 5.0;
     wrong.limits.max_speed_mm_s = 5.0;
+    wrong.limits.max_rotation_speed_deg_s = MOST_ROTATION_SPEED_DEG_S + 1.0;
     wrong.limits.workspace = Some(WorkspaceBox { min_mm: [0.0; 3], max_mm: [0.0, 1.0, 1.0] });
     let expected = [
         problem::NO_DIRECTION,
@@ -205,6 +207,7 @@ fn wrong_settings_are_told_and_keep_the_robot_still() {
         problem::STEP_TOO_LONG,
         problem::TRANSIT_TOO_FAST,
         problem::SEARCH_TOO_FAST,
+        problem::TURNS_TOO_FAST,
         problem::EMPTY_BOX,
     ];
     assert_eq!(problems(&wrong, 15.0, None), expected);
@@ -216,6 +219,26 @@ fn wrong_settings_are_told_and_keep_the_robot_still() {
     let view = View { cell: &cell, session: Some(&empty), has_solution: false };
     assert_eq!(refusal(&view, &CellCommand::FindLargestArc), Some(words::SETTINGS_WRONG));
     assert_eq!(next(&view, &with_addresses()).button, None);
+}
+
+#[test]
+fn a_robot_that_did_not_say_that_it_stands_can_be_stopped_again() {
+    let stopped = |robot_stopped| Some(RoutineEnd::Stopped { robot_stopped });
+    for (last_end, readiness, may_be) in [
+        (None, Readiness::Ready, false),
+        (Some(RoutineEnd::Done), Readiness::Ready, false),
+        (stopped(Some(true)), Readiness::Ready, false),
+        (stopped(None), Readiness::Ready, true),
+        (stopped(Some(false)), Readiness::Unknown, true),
+        // It was never moved from here.
+        (stopped(Some(false)), Readiness::ReadOnly, false),
+    ] {
+        let mut cell = CellView { last_end: last_end.clone(), ..connected(readiness) };
+        assert_eq!(may_be_moving(&cell), may_be, "{last_end:?}");
+        assert!(!is_running(&cell), "nothing else waits for that");
+        cell.robot.state = LinkState::Off;
+        assert!(!may_be_moving(&cell), "nobody is there to be stopped");
+    }
 }
 
 #[test]

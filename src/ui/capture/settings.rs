@@ -4,6 +4,7 @@ use egui::{ComboBox, DragValue, Frame, Margin, Role, Ui, WidgetInfo};
 
 use crate::app::cell::CellSettings;
 use crate::device::WorkspaceBox;
+use crate::device::safety::MOST_ROTATION_SPEED_DEG_S;
 use crate::device::search::{DirectionFrame, StopRule};
 use crate::geometry::Vec3;
 use crate::text::capture_settings as words;
@@ -32,13 +33,24 @@ pub fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
                 for problem in problems(&settings, radius_mm, desk.view.cell.robot.latest.as_ref()) {
                     remark(ui, "!", problem, theme::palette(ui).bad);
                 }
+                // A section still opens while its fields are not to be changed.
+                let is_free = !desk.view.cell.are_settings_in_use();
+                if !is_free {
+                    hint(ui, words::IN_USE);
+                }
                 let summary = search_summary(&settings);
-                section(ui, words::SEARCH, &summary, None, |ui| search(ui, &mut settings));
+                section(ui, words::SEARCH, &summary, None, |ui| {
+                    ui.add_enabled_ui(is_free, |ui| search(ui, &mut settings));
+                });
                 let limits = &settings.limits;
                 let summary = words::limits_summary(&fixed(limits.max_speed_mm_s, 0), limits.workspace.is_some());
-                section(ui, words::LIMITS, &summary, None, |ui| limits_rows(ui, &mut settings, desk));
+                section(ui, words::LIMITS, &summary, None, |ui| {
+                    ui.add_enabled_ui(is_free, |ui| limits_rows(ui, &mut settings, desk));
+                });
                 let summary = words::captures_summary(settings.settle.settle_ms, settings.settle.num_profiles);
-                section(ui, words::CAPTURES, &summary, None, |ui| captures(ui, &mut settings));
+                section(ui, words::CAPTURES, &summary, None, |ui| {
+                    ui.add_enabled_ui(is_free, |ui| captures(ui, &mut settings));
+                });
                 let summary = if settings.mounting.is_some() { words::GIVEN } else { words::NOT_GIVEN };
                 let opens = std::mem::take(&mut desk.state.reveals_mounting);
                 section(ui, words::MOUNTING, summary, opens.then_some(true), |ui| {
@@ -139,7 +151,7 @@ fn speed<'a>(value: &'a mut f64, unit: &'static str, most: f64) -> DragValue<'a>
 fn limits_rows(ui: &mut Ui, settings: &mut CellSettings, desk: &Desk<'_>) {
     let limits = &mut settings.limits;
     number_row(ui, words::SPEED_CAP, "", speed(&mut limits.max_speed_mm_s, " mm/s", 500.0));
-    number_row(ui, words::TURN_CAP, "", speed(&mut limits.max_rotation_speed_deg_s, " °/s", 180.0));
+    number_row(ui, words::TURN_CAP, "", speed(&mut limits.max_rotation_speed_deg_s, " °/s", MOST_ROTATION_SPEED_DEG_S));
     number_row(ui, words::TRANSIT_SPEED, "", speed(&mut limits.transit_speed_mm_s, " mm/s", 500.0));
     number_row(ui, words::SEARCH_SPEED, "", speed(&mut limits.search_speed_mm_s, " mm/s", 500.0));
     number_row(ui, words::MAX_MOVE, "", length(&mut limits.max_move_mm, 1.0, 2000.0, 0));

@@ -47,7 +47,7 @@ pub fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
 fn stop(ui: &mut Ui, desk: &mut Desk<'_>) {
     let cell = desk.view.cell;
     // A robot that is connected may be moving although no routine knows of it.
-    let can_stop = model::is_running(cell) || cell.robot.state != LinkState::Off;
+    let can_stop = model::may_be_moving(cell) || cell.robot.state != LinkState::Off;
     if stop_button(ui, vec2(STOP_WIDTH, BUTTON_HEIGHT), words::STOP, can_stop) {
         desk.ask(CellCommand::Stop);
     }

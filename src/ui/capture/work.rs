@@ -5,6 +5,7 @@ use egui::{Align, DragValue, Frame, Label, Layout, Margin, ProgressBar, Ui, UiBu
 use crate::app::cell::{CellCommand, Proposal, StationRoutine};
 use crate::device::{MotionRefusal, RoutineEnd};
 use crate::text::capture as words;
+use crate::text::cell::reason_of_end;
 use crate::ui::theme;
 use crate::ui::widgets::{card_with_height, fixed};
 
@@ -97,13 +98,17 @@ fn station(ui: &mut Ui, desk: &mut Desk<'_>) {
                     );
                 });
                 hint(ui, &words::num_stations(num_stations));
+                if let Some(std_mm) = desk.view.cell.repeat_std_mm {
+                    hint(ui, &words::repeat_noise(&fixed(std_mm * 1000.0, 1)));
+                }
                 match &desk.view.cell.last_end {
                     // How a search ended stands below its boxes.
                     Some(end) if !matches!(end, RoutineEnd::Searched(_)) => {
-                        let (is_well, sentence) = words::routine_end(end);
                         let palette = theme::palette(ui);
-                        let (mark, color) = if is_well { ("✔", palette.good) } else { ("!", palette.warn) };
-                        remark(ui, mark, &sentence, color);
+                        match reason_of_end(end) {
+                            None => remark(ui, "✔", words::CAPTURED, palette.good),
+                            Some(reason) => remark(ui, "!", &words::sentence(&reason), palette.warn),
+                        }
                     }
                     _ => {}
                 }

@@ -4,7 +4,7 @@ use egui::{Context, Event, Key};
 
 use crate::app::Command;
 use crate::app::cell::{CellCommand, CellView};
-use crate::ui::capture::model::is_running;
+use crate::ui::capture::model::may_be_moving;
 
 use super::Shell;
 
@@ -28,7 +28,7 @@ pub fn is_practise(command: &Command) -> bool {
 /// Whether a key was pressed that stops the robot, which nothing else gets then: Escape always, the space bar unless it
 /// is being typed.
 pub fn takes_stop_key(ctx: &Context, cell: &CellView) -> bool {
-    if !is_running(cell) {
+    if !may_be_moving(cell) {
         return false;
     }
     let is_typing = ctx.text_edit_focused();

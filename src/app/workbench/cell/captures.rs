@@ -7,7 +7,7 @@ use std::time::Instant;
 use crate::app::cell::{Activity, StationRoutine};
 use crate::calibrate::SideChoice;
 use crate::device::{
-    DeviceError, LinkState, Measurement, Routine, RoutineEnd, RoutineEvent, SearchEnd, StepCapture, Task,
+    DeviceError, LinkState, Measurement, Routine, RoutineEnd, RoutineEvent, SearchEnd, SearchReport, StepCapture, Task,
 };
 use crate::geometry::{Base, Flange, Profile, Transform};
 use crate::session::edit::{CellValue, free_label};
@@ -17,6 +17,8 @@ use crate::text::cell as words;
 use crate::text::edits::capture_label;
 
 use super::super::{NoticeKind, Workbench};
+use super::proposals::FoundPeak;
+use super::run::RefusedPose;
 
 /// A routine with the station that it measures.
 pub(super) struct Measuring {
@@ -27,9 +29,14 @@ pub(super) struct Measuring {
     gesture: u64,
     label: String,
     go_to: Option<Transform<Base, Flange>>,
-    /// The first profile: it tells the station from others, whatever it is called and wherever it is moved.
-    first_profile: Option<Arc<Profile>>,
-    num_captures: usize,
+    /// Where the robot stood when it began.
+    stood_at: Option<Transform<Base, Flange>>,
+    /// Whether a search has told of itself.
+    has_searched: bool,
+    /// The pose of the first capture.
+    first_pose: Option<Transform<Base, Flange>>,
+    /// What was captured: it tells the station from others, whatever it is called and wherever it is moved.
+    profiles: Vec<Arc<Profile>>,
 }
 
 impl Measuring {
@@ -38,11 +45,23 @@ impl Measuring {
         self.document_id = None;
     }
 
+    /// The station with the most of what was captured.
     fn station_idx(&self, session: &Session) -> Option<usize> {
-        let first = self.first_profile.as_ref()?;
-        let is_first =
-            |capture: &Capture| matches!(&capture.reading, Reading::Profile(profile) if Arc::ptr_eq(profile, first));
-        session.stations.iter().position(|station| station.captures.iter().any(is_first))
+        let counted = session.stations.iter().map(|station| self.num_captures_in(station)).enumerate();
+        counted.filter(|(_, count)| *count > 0).max_by_key(|(_, count)| *count).map(|(idx, _)| idx)
+    }
+
+    fn num_captures_in(&self, station: &Station) -> usize {
+        let is_ours = |capture: &&Capture| {
+            let Reading::Profile(profile) = &capture.reading else { return false };
+            self.profiles.iter().any(|ours| Arc::ptr_eq(ours, profile))
+        };
+        station.captures.iter().filter(is_ours).count()
+    }
+
+    /// Whether any of what was captured is not in the session any more.
+    fn is_taken_back(&self, session: &Session) -> bool {
+        session.stations.iter().map(|station| self.num_captures_in(station)).sum::<usize>() < self.profiles.len()
     }
 }
 
@@ -100,12 +119,13 @@ impl Workbench {
             gesture: new_gesture(),
             label,
             go_to,
-            first_profile: None,
-            num_captures: 0,
+            stood_at: self.cell.view.robot.latest.as_ref().map(|report| report.base_from_flange),
+            has_searched: false,
+            first_pose: None,
+            profiles: Vec::new(),
         });
         self.end_replay();
         self.forget_proposal();
-        self.cell.view.search = None;
         self.cell.view.last_end = None;
         self.cell.view.activity = if go_to.is_some() { Activity::Moving } else { Activity::Settling };
         Ok(())
@@ -124,11 +144,18 @@ impl Workbench {
                     self.cell.view.repeat_std_mm = capture.repeat_std_mm;
                     self.keep_capture(capture);
                 }
-                RoutineEvent::Searched(report) => self.cell.view.search = Some(Arc::from(report)),
+                RoutineEvent::Searched(report) => self.show_search(Arc::from(report)),
                 RoutineEvent::Ended(end) => self.end_routine(&end),
             }
         }
         changed
+    }
+
+    fn show_search(&mut self, report: Arc<SearchReport>) {
+        if let Some(measuring) = &mut self.cell.measuring {
+            measuring.has_searched = true;
+        }
+        self.cell.view.search = Some(report);
     }
 
     /// A routine that was told to stop may still tell what it does.
@@ -152,7 +179,7 @@ impl Workbench {
             step_mm: captured.step_mm,
             unknown: UnknownFields::new(),
         };
-        let edit = if measuring.first_profile.is_none() {
+        let edit = if measuring.profiles.is_empty() {
             let station = Station {
                 label: measuring.label.clone(),
                 enabled: true,
@@ -167,21 +194,19 @@ impl Workbench {
             let Some(station_idx) = measuring.station_idx(&document.session) else { return };
             Edit::AppendCapture { station_idx, capture: Box::new(capture) }
         };
-        measuring.first_profile.get_or_insert(profile);
         let (gesture, label) = (measuring.gesture, capture_label(&words::station(&measuring.label)));
         if self.edit_as(&edit, Some(gesture), label)
             && let Some(measuring) = &mut self.cell.measuring
         {
-            measuring.num_captures += 1;
+            measuring.first_pose.get_or_insert(captured.base_from_flange);
+            measuring.profiles.push(profile);
         }
     }
 
-    /// Undo takes a station back while it is being measured: there is no sense in going on.
+    /// Undo takes a station back, or a part of it, while it is being measured: there is no sense in going on.
     fn stop_if_taken_back(&mut self) -> bool {
         let (Some(measuring), Some(document)) = (&mut self.cell.measuring, &self.document) else { return false };
-        let is_taken_back = measuring.document_id == Some(document.id)
-            && measuring.first_profile.is_some()
-            && measuring.station_idx(&document.session).is_none();
+        let is_taken_back = measuring.document_id == Some(document.id) && measuring.is_taken_back(&document.session);
         if is_taken_back {
             measuring.give_up();
             self.stop_cell();
@@ -194,12 +219,21 @@ impl Workbench {
         let Some(measuring) = self.cell.measuring.take() else { return };
         self.cell.view.activity = Activity::Idle;
         self.cell.view.last_end = Some(end.clone());
-        if self.go_on_elsewhere(&measuring, end) {
+        if !measuring.has_searched {
+            // That of the station before was shown on the way; it is not this one's.
+            self.cell.view.search = None;
+        }
+        if let Some(refused) = refused_pose(&measuring, end)
+            && self.look_elsewhere(refused)
+        {
             return;
         }
-        let num_captures = if measuring.document_id.is_some() { measuring.num_captures } else { 0 };
+        let num_captures = if measuring.document_id.is_some() { measuring.profiles.len() } else { 0 };
         if let Some(message) = words::routine_ended(&words::station(&measuring.label), num_captures, end) {
             self.notify(NoticeKind::Error, message);
+        }
+        if let RoutineEnd::Searched(SearchEnd::Found { peak_mm, peak_std_mm }) = end {
+            self.note_peak(&measuring, *peak_mm, *peak_std_mm);
         }
         if let RoutineEnd::Searched(SearchEnd::NoArcAtStart { .. } | SearchEnd::ResidualGrew { .. }) = end {
             self.leave_out(&measuring);
@@ -212,16 +246,11 @@ impl Workbench {
         self.go_on_after(end);
     }
 
-    /// A pose that the robot would not go to is no station: a run looks for another one. Answers whether it does.
-    fn go_on_elsewhere(&mut self, measuring: &Measuring, end: &RoutineEnd) -> bool {
-        let (Some(pose), RoutineEnd::Failed { error: DeviceError::Refused { .. }, .. }) = (measuring.go_to, end) else {
-            return false;
-        };
-        if measuring.num_captures > 0 {
-            return false;
-        }
-        let num_refused = self.cell.proposing.note_refused(pose);
-        self.look_elsewhere(num_refused)
+    fn note_peak(&mut self, measuring: &Measuring, peak_mm: f64, std_mm: f64) {
+        let (Some(first_profile), Some(first)) = (measuring.profiles.first(), measuring.first_pose) else { return };
+        let at_peak = self.cell.view.settings.search.pose_at(first.rigid(), peak_mm);
+        let base_from_flange = Transform::from_rigid(at_peak);
+        self.cell.proposing.note_peak(FoundPeak { first_profile: Arc::clone(first_profile), base_from_flange, std_mm });
     }
 
     /// Captures that show no ball, or one that moved, take no part until somebody has looked.
@@ -235,6 +264,19 @@ impl Workbench {
         let label = capture_label(&words::station(&measuring.label));
         self.edit_as(&edit, Some(measuring.gesture), label);
     }
+}
+
+/// The pose that the robot would not go to. A refusal of something else than the target may have come when it was on the
+/// way, or there: whether it still stands where it stood is to be seen.
+fn refused_pose(measuring: &Measuring, end: &RoutineEnd) -> Option<RefusedPose> {
+    let RoutineEnd::Failed { error, robot_stopped: Some(true) } = end else { return None };
+    let stood_at = match error {
+        DeviceError::OutOfReach { .. } => None,
+        DeviceError::Refused { .. } => Some(measuring.stood_at?),
+        _ => return None,
+    };
+    let pose = measuring.go_to.filter(|_| measuring.profiles.is_empty())?;
+    Some(RefusedPose { pose, stood_at, reason: error.to_string(), at: Instant::now() })
 }
 
 /// The link's own reason, where it has one.

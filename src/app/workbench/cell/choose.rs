@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::calibrate::{BallProblem, best_available};
-use crate::device::{Arming, RobotReport};
+use crate::device::{Arming, MotionRefusal, RobotReport, SearchSettings};
 use crate::geometry::{Base, Flange, Transform};
 use crate::plan::{
     Limits, MeasuredStation, Plan, PlanRefusal, PlannedStation, RoughCell, View, next_rough, next_stations,
@@ -39,6 +39,8 @@ pub(super) struct Chooser {
     pub limits: Limits,
     pub arming: Option<Arming>,
     pub report: Option<RobotReport>,
+    /// What is to be done there.
+    pub search: Option<SearchSettings>,
 }
 
 impl Chooser {
@@ -108,7 +110,17 @@ impl Chooser {
     /// Whether nothing but the arm switch is in the way.
     fn is_free(&self, to: &Transform<Base, Flange>) -> bool {
         let (Some(arming), Some(report)) = (&self.arming, &self.report) else { return true };
-        let speed_mm_s = arming.limits.transit_speed_mm_s;
-        arming.check(&report.readiness, &report.base_from_flange, to, speed_mm_s).is_ok()
+        check_station(arming, report, to, self.search.as_ref()).is_ok()
     }
+}
+
+/// Whether the robot may go to a station from where it is, and make the whole travel of the search there.
+pub(super) fn check_station(
+    arming: &Arming,
+    report: &RobotReport,
+    to: &Transform<Base, Flange>,
+    search: Option<&SearchSettings>,
+) -> Result<(), MotionRefusal> {
+    arming.check(&report.readiness, &report.base_from_flange, to, arming.limits.transit_speed_mm_s)?;
+    search.map_or(Ok(()), |search| arming.check_search(&report.readiness, to, search))
 }

@@ -20,14 +20,16 @@ const FOLDER_PATIENCE: u32 = 20;
 /// Motion is allowed, at a pose and over a connection.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Armed {
-    base_from_flange: Transform<Base, Flange>,
-    connection: u64,
+    pub base_from_flange: Transform<Base, Flange>,
+    pub connection: u64,
 }
 
 impl Workbench {
     pub(super) fn connect_robot(&mut self, setup: RobotSetup) {
         self.disconnect_robot();
         self.cell.view.robot = LinkView { setup: Some(setup.clone()), state: LinkState::Connecting, latest: None };
+        // How a routine ended with another robot says nothing of this one.
+        self.cell.view.last_end = None;
         let connect = Box::new(move |deadline| robot::connect(&setup, deadline));
         self.cell.robot = Some(RobotWorker::start(connect, self.cell.deadlines, self.wake.clone()));
     }

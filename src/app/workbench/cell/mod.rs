@@ -10,7 +10,7 @@ mod run;
 
 use std::time::Instant;
 
-use crate::app::cell::{Activity, CellCommand, CellView};
+use crate::app::cell::{Activity, CellCommand, CellSettings, CellView};
 use crate::device::{Deadlines, RobotWorker, SensorWorker};
 use crate::text::cell as words;
 
@@ -65,7 +65,7 @@ impl Workbench {
             CellCommand::EndPractice => self.end_practice(),
             CellCommand::Arm(true) => self.arm(),
             CellCommand::Arm(false) => self.disarm(),
-            CellCommand::SetSettings(settings) => self.cell.view.settings = *settings,
+            CellCommand::SetSettings(settings) => self.set_cell_settings(&settings),
             CellCommand::CaptureStation => self.capture_here(),
             CellCommand::FindLargestArc => self.find_largest_arc(),
             CellCommand::ProposeStation => self.want_proposal(),
@@ -79,6 +79,21 @@ impl Workbench {
             CellCommand::StartReplay => self.start_replay(),
             CellCommand::EndReplay => self.end_replay(),
         }
+    }
+
+    /// A routine keeps what it was begun with: what concerns motion and captures changes only between two of them, so that
+    /// what is shown is what holds. One that was told to stop moves no more.
+    fn set_cell_settings(&mut self, settings: &CellSettings) {
+        let mut settings = *settings;
+        if self.cell.measuring.is_some() && self.cell.view.are_settings_in_use() {
+            let in_use = self.cell.view.settings;
+            let (limits, search, settle) = (in_use.limits, in_use.search, in_use.settle);
+            if (settings.limits, settings.search, settings.settle) != (limits, search, settle) {
+                self.notify(NoticeKind::Error, words::SETTINGS_IN_USE.to_owned());
+            }
+            settings = CellSettings { limits, search, settle, ..settings };
+        }
+        self.cell.view.settings = settings;
     }
 
     /// Takes in what the devices and the routine have told. Answers whether anything changed.
@@ -118,5 +133,7 @@ impl Workbench {
         self.forget_proposal();
         self.cell.proposing = Proposing::default();
         self.end_replay();
+        // Whoever armed motion meant the session that was open.
+        self.disarm();
     }
 }

@@ -1,17 +1,19 @@
 //! The next station's pose, before anything moves: from the plan where there is a solution, otherwise roughly.
 
-use crate::app::cell::{Proposal, RoughMounting};
+use std::sync::Arc;
+
+use crate::app::cell::{Proposal, RoughMounting, StationRoutine};
 use crate::app::jobs::{JobOutcome, Slot};
 use crate::calibrate::{Noise, Reading as MeasuredReading};
-use crate::device::{LinkState, MotionRefusal};
+use crate::device::{LinkState, MotionRefusal, SearchSettings};
 use crate::fit::ArcFit;
 use crate::geometry::{Base, Flange, Profile, Rigid, Transform, Vec3};
 use crate::plan::{MeasuredStation, PlannedStation, RoughCell, View};
-use crate::session::Reading;
+use crate::session::{Capture, Reading, Station};
 use crate::text::cell as words;
 
 use super::super::{NoticeKind, Workbench};
-use super::choose::{Basis, Chooser, Chosen};
+use super::choose::{Basis, Chooser, Chosen, check_station};
 
 /// The ball's centre stays so far inside the ends of the line that its arc does too, radii ...
 const ARC_HALF_WIDTH_RADII: f64 = 0.6;
@@ -30,6 +32,18 @@ pub(super) struct Proposing {
     avoided: Vec<Transform<Base, Flange>>,
     /// How many of them in a row the robot would not go to.
     num_refused: u32,
+    /// Where the searches of this document found their peaks.
+    peaks: Vec<FoundPeak>,
+}
+
+/// The peak of a search.
+pub(super) struct FoundPeak {
+    /// The first profile of the search, which tells its station.
+    pub first_profile: Arc<Profile>,
+    /// The pose at the peak.
+    pub base_from_flange: Transform<Base, Flange>,
+    /// σ of the peak along the travel, mm.
+    pub std_mm: f64,
 }
 
 impl Proposing {
@@ -52,6 +66,11 @@ impl Proposing {
     /// A station was measured: where the robot can go is known again.
     pub const fn note_measured(&mut self) {
         self.num_refused = 0;
+    }
+
+    /// A search found its peak: the next stations are planned by that.
+    pub fn note_peak(&mut self, peak: FoundPeak) {
+        self.peaks.push(peak);
     }
 }
 
@@ -111,6 +130,7 @@ impl Workbench {
                     limits: self.plan_limits,
                     arming: self.arming(),
                     report: self.cell.view.robot.latest.clone(),
+                    search: self.search_at_stations(),
                 };
                 (0..self.cell.proposing.num_refused).for_each(|_| chooser.narrow());
                 self.cell.proposing.choosing.start("propose", &self.wake, move |_| chooser.choose());
@@ -141,8 +161,14 @@ impl Workbench {
         proposal.turn_deg = from.rotation().angle_to(&to.rotation()).to_degrees();
         proposal.refusal = match self.arming() {
             None => Some(MotionRefusal::NotArmed),
-            Some(arming) => arming.check(&report.readiness, from, to, arming.limits.transit_speed_mm_s).err(),
+            Some(arming) => check_station(&arming, report, to, self.search_at_stations().as_ref()).err(),
         };
+    }
+
+    /// The search that a run makes at each station, if that is what it makes.
+    fn search_at_stations(&self) -> Option<SearchSettings> {
+        let settings = &self.cell.view.settings;
+        (settings.routine == StationRoutine::LargestArc).then_some(settings.search)
     }
 
     /// The robot, the switch or the limits may have changed since.
@@ -174,6 +200,7 @@ impl Workbench {
     pub(super) fn drop_proposal(&mut self) {
         self.forget_proposal();
         self.pause_run(true);
+        self.ask_no_more();
     }
 
     /// What the next station is chosen by.
@@ -195,7 +222,10 @@ impl Workbench {
             .map(|seen| {
                 let circle = seen.arc.circle;
                 let centre_mm = [circle.x_mm, circle.z_mm];
-                MeasuredStation::of_section(seen.base_from_flange, centre_mm, circle.radius_mm, radius_mm)
+                match seen.peak {
+                    Some(peak) => MeasuredStation::at_peak(peak.base_from_flange, centre_mm, peak.std_mm),
+                    None => MeasuredStation::of_section(seen.base_from_flange, centre_mm, circle.radius_mm, radius_mm),
+                }
             })
             .collect();
         let [least_z, most_z] = stations
@@ -229,10 +259,11 @@ impl Workbench {
         let mut found = Vec::new();
         if let (Some(document), Some(results)) = (&self.document, &self.results) {
             for (station_idx, station) in document.session.stations.iter().enumerate() {
+                let peak = self.peak_of(station);
                 let sections = station.captures.iter().enumerate().filter_map(|(capture_idx, capture)| {
                     match (&capture.reading, results.measured.reading(station_idx, capture_idx)) {
                         (Reading::Profile(profile), Some(MeasuredReading::Arc(arc))) => {
-                            Some(Seen { base_from_flange: capture.base_from_flange, arc, profile })
+                            Some(Seen { base_from_flange: capture.base_from_flange, arc, profile, peak })
                         }
                         _ => None,
                     }
@@ -247,9 +278,20 @@ impl Workbench {
             && view.robot.state == LinkState::Ready
             && let Ok(arc) = &live.arc
         {
-            found.push(Seen { base_from_flange: report.base_from_flange, arc, profile: &live.reading.profile });
+            let profile = &live.reading.profile;
+            found.push(Seen { base_from_flange: report.base_from_flange, arc, profile, peak: None });
         }
         found
+    }
+
+    fn peak_of(&self, station: &Station) -> Option<&FoundPeak> {
+        let profile = |capture: &Capture| match &capture.reading {
+            Reading::Profile(profile) => Some(Arc::clone(profile)),
+            Reading::Point(_) => None,
+        };
+        let profiles: Vec<_> = station.captures.iter().filter_map(profile).collect();
+        let is_of_station = |peak: &&FoundPeak| profiles.iter().any(|one| Arc::ptr_eq(one, &peak.first_profile));
+        self.cell.proposing.peaks.iter().find(is_of_station)
     }
 }
 
@@ -258,6 +300,8 @@ struct Seen<'a> {
     base_from_flange: Transform<Base, Flange>,
     arc: &'a ArcFit,
     profile: &'a Profile,
+    /// Where the ball's centre is in the laser plane, if a search has found that.
+    peak: Option<&'a FoundPeak>,
 }
 
 fn rigid(mounting: &RoughMounting) -> Rigid {

@@ -90,6 +90,8 @@ impl Workbench {
             station: None,
             ticker: Some(Ticker::start(self.wake.clone())),
         });
+        // It was made for where the robot is, and what is shown now is where it was.
+        self.forget_proposal();
     }
 
     pub(super) fn end_replay(&mut self) {

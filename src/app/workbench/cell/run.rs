@@ -1,7 +1,10 @@
 //! A run over several stations: measure where the robot stands, then propose, go, measure, and so on.
 
+use std::time::Instant;
+
 use crate::app::cell::{Activity, RunView};
-use crate::device::{DeviceError, MotionRefusal, RoutineEnd};
+use crate::device::{DeviceError, MotionRefusal, RoutineEnd, SearchEnd};
+use crate::geometry::{Base, Flange, Transform};
 use crate::text::cell as words;
 
 use super::super::{NoticeKind, Workbench};
@@ -12,8 +15,24 @@ const MOST_FAILED_IN_A_ROW: u16 = 3;
 /// So many poses in a row that the robot would not go to end it as well.
 const MOST_REFUSED_IN_A_ROW: u32 = 10;
 
+/// What a robot that stands still may seem to move between two reports: a few times the noise of coarse ones.
+const STANDS_WITHIN_MM: f64 = 0.2;
+const STANDS_WITHIN_DEG: f64 = 0.1;
+
+/// A pose that the robot would not go to.
+#[derive(Clone, Debug)]
+pub(super) struct RefusedPose {
+    pub pose: Transform<Base, Flange>,
+    /// Where the robot has to stand still, if it is the pose that was refused; `None` where the controller says so itself.
+    pub stood_at: Option<Transform<Base, Flange>>,
+    /// What the robot said.
+    pub reason: String,
+    /// When.
+    pub at: Instant,
+}
+
 /// What a run waits for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 enum Stage {
     /// A proposal is to be asked for.
     Between,
@@ -23,10 +42,12 @@ enum Stage {
     Asking,
     /// The end of a station's routine.
     Measuring,
+    /// A report of the robot, to see whether it was the pose that it would not go to.
+    Refused(RefusedPose),
 }
 
 /// A run under way.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Run {
     num_stations: u16,
     num_done: u16,
@@ -37,7 +58,7 @@ pub(super) struct Run {
 }
 
 impl Run {
-    const fn view(&self) -> RunView {
+    fn view(&self) -> RunView {
         RunView {
             num_done: self.num_done,
             num_failed: self.num_failed,
@@ -96,14 +117,12 @@ impl Workbench {
         let is_complete = num_done >= run.num_stations;
         self.show_run();
         match end {
-            // The arm came to its end during a search: elsewhere it may not.
-            RoutineEnd::Failed { error: DeviceError::Refused { .. }, .. } if num_in_a_row < MOST_FAILED_IN_A_ROW => {}
-            // What happened is in the notice before.
-            RoutineEnd::Failed { .. } => self.end_run(Some(words::DEVICE_FAILED.to_owned())),
             RoutineEnd::Stopped { .. } => self.end_run(Some(words::STOPPED.to_owned())),
             RoutineEnd::NotAllowed(refusal) => self.end_run(Some(refusal.to_string())),
+            // What happened is in the notice before.
+            _ if !is_of_this_pose(end) => self.end_by_trouble(),
             _ if is_complete => {
-                self.cell.run = None;
+                self.put_run_away();
                 self.notify(NoticeKind::Done, words::run_done(num_done, num_failed));
             }
             _ if num_in_a_row >= MOST_FAILED_IN_A_ROW => {
@@ -113,23 +132,51 @@ impl Workbench {
         }
     }
 
-    /// The robot would not go to a pose, once more: a run asks for another one, unless it was too many.
-    pub(super) fn look_elsewhere(&mut self, num_refused: u32) -> bool {
+    /// Something is wrong with the cell: nothing moves any more until somebody has seen to it and arms anew.
+    fn end_by_trouble(&mut self) {
+        self.end_run(Some(words::DEVICE_FAILED.to_owned()));
+        self.disarm();
+    }
+
+    /// The robot would not go to a pose: a run asks for another one, unless it was too many. Answers whether it does.
+    pub(super) fn look_elsewhere(&mut self, refused: RefusedPose) -> bool {
+        let num_refused = self.cell.proposing.note_refused(refused.pose);
         if self.cell.run.is_none() || num_refused >= MOST_REFUSED_IN_A_ROW {
             return false;
         }
-        self.set_stage(Stage::Between);
+        self.cell.view.activity = Activity::Thinking;
+        self.set_stage(Stage::Refused(refused));
+        true
+    }
+
+    /// Whether the robot still stands where it stood before a pose was refused, once it has told where it is.
+    fn look_after_refusal(&mut self, refused: &RefusedPose) -> bool {
+        let Some(stood_at) = &refused.stood_at else {
+            self.set_stage(Stage::Between);
+            return true;
+        };
+        let latest = self.cell.view.robot.latest.as_ref().filter(|report| report.received_at > refused.at);
+        let Some(latest) = latest else { return false };
+        let stands_at = &latest.base_from_flange;
+        let moved_mm = (stands_at.translation_mm() - stood_at.translation_mm()).norm();
+        let turned_deg = stands_at.rotation().angle_to(&stood_at.rotation()).to_degrees();
+        if latest.is_moving != Some(true) && moved_mm <= STANDS_WITHIN_MM && turned_deg <= STANDS_WITHIN_DEG {
+            self.set_stage(Stage::Between);
+        } else {
+            self.notify(NoticeKind::Error, refused.reason.clone());
+            self.end_by_trouble();
+        }
         true
     }
 
     /// What a run does between two routines.
     pub(super) fn poll_run(&mut self) -> bool {
-        let Some(run) = self.cell.run else { return false };
-        if run.is_paused || run.stage == Stage::Measuring {
-            return false;
-        }
+        let Some(run) = &self.cell.run else { return false };
         let has_proposal = self.cell.view.proposal.is_some();
-        match run.stage {
+        match run.stage.clone() {
+            // Seen to during a pause as well: it is about where the robot stands now.
+            Stage::Refused(refused) => return self.look_after_refusal(&refused),
+            _ if run.is_paused => return false,
             Stage::Between => {
                 self.set_stage(Stage::Proposing);
                 self.cell.view.activity = Activity::Thinking;
@@ -157,6 +204,13 @@ impl Workbench {
         }
     }
 
+    /// The proposal that a run asked about is gone.
+    pub(super) fn ask_no_more(&mut self) {
+        if self.cell.run.as_ref().is_some_and(|run| matches!(run.stage, Stage::Asking)) {
+            self.set_stage(Stage::Between);
+        }
+    }
+
     /// A proposal was accepted, which ends a pause as well.
     pub(super) fn run_is_measuring(&mut self) {
         if let Some(run) = &mut self.cell.run {
@@ -169,7 +223,8 @@ impl Workbench {
         let Some(run) = &mut self.cell.run else { return };
         run.is_paused = is_paused;
         // A proposal that was dropped meanwhile is asked for again.
-        if !is_paused && run.stage != Stage::Measuring && self.cell.view.proposal.is_none() {
+        let is_between = !matches!(run.stage, Stage::Measuring | Stage::Refused(_));
+        if !is_paused && is_between && self.cell.view.proposal.is_none() {
             run.stage = Stage::Between;
         }
         match &self.cell.measuring {
@@ -181,14 +236,22 @@ impl Workbench {
 
     /// Ends the run before its time; without a reason somebody wanted it.
     pub(super) fn end_run(&mut self, reason: Option<String>) {
-        let Some(run) = self.cell.run.take() else { return };
+        let Some((num_done, num_stations)) = self.cell.run.as_ref().map(|run| (run.num_done, run.num_stations)) else {
+            return;
+        };
         self.forget_proposal();
+        self.put_run_away();
+        let reason = reason.unwrap_or_else(|| words::STOPPED.to_owned());
+        self.notify(NoticeKind::Error, words::run_ended(num_done, num_stations, &reason));
+    }
+
+    /// What remains to be seen of a run waits for nothing.
+    fn put_run_away(&mut self) {
+        let Some(run) = self.cell.run.take() else { return };
+        self.cell.view.run = Some(Run { is_paused: false, stage: Stage::Between, ..run }.view());
         if self.cell.measuring.is_none() {
             self.cell.view.activity = Activity::Idle;
         }
-        self.cell.view.run = Some(Run { is_paused: false, stage: Stage::Between, ..run }.view());
-        let reason = reason.unwrap_or_else(|| words::STOPPED.to_owned());
-        self.notify(NoticeKind::Error, words::run_ended(run.num_done, run.num_stations, &reason));
     }
 
     fn set_stage(&mut self, stage: Stage) {
@@ -204,3 +267,33 @@ impl Workbench {
         }
     }
 }
+
+/// Whether another pose may do better: nothing is wrong with the cell, as far as this ending tells.
+const fn is_of_this_pose(end: &RoutineEnd) -> bool {
+    match end {
+        RoutineEnd::Done => true,
+        RoutineEnd::Searched(end) => match end {
+            SearchEnd::Found { .. }
+            | SearchEnd::NoArcAtStart { .. }
+            | SearchEnd::RadiusUnchanged { .. }
+            | SearchEnd::ArcLost { .. }
+            | SearchEnd::TravelExhausted { .. }
+            | SearchEnd::CapturesExhausted { .. } => true,
+            // The ball moved or the robot did not, and settings do not change by themselves.
+            SearchEnd::ResidualGrew { .. } | SearchEnd::Stuck { .. } | SearchEnd::NotBegun(_) => false,
+        },
+        // The arm came to its end during a search.
+        RoutineEnd::Failed { error: DeviceError::OutOfReach { .. }, robot_stopped } => {
+            matches!(robot_stopped, Some(true))
+        }
+        RoutineEnd::Failed { .. }
+        | RoutineEnd::Stopped { .. }
+        | RoutineEnd::NotAllowed(_)
+        | RoutineEnd::NeverStill { .. }
+        | RoutineEnd::StaleProfiles { .. } => false,
+    }
+}
+
+#[cfg(test)]
+#[path = "run_tests.rs"]
+mod tests;

@@ -18,6 +18,10 @@ const RESOLUTION_MM: f64 = 0.001;
 const ACCELERATION_PERCENT: u16 = 50;
 /// How long one look at a move waits for its end; short, for the caller has to look at other things too.
 const LOOK: Duration = Duration::from_millis(5);
+/// What the server answers to a target that the arm cannot get to; it looks before it moves.
+const NOT_REACHABLE: &str = "position-is-not-reachable";
+/// The server that looks on must not hold up a stop for longer.
+const LOOKING_ON_PATIENCE: Duration = Duration::from_millis(200);
 /// Columns of a value hold six digits before the point.
 const MAX_VALUE: f64 = 999_999.0;
 
@@ -83,14 +87,17 @@ impl RobotDriver for MappdkRobot {
     }
 
     fn report(&mut self, deadline: Instant) -> Result<RobotReport, DeviceError> {
-        let line = match &mut self.looking_on {
-            Some(line) => Some(line),
+        match (&mut self.looking_on, &self.motion) {
+            (Some(line), Some(_)) => match ask_pose(line, deadline.min(Instant::now() + LOOKING_ON_PATIENCE)) {
+                Ok(pose) => self.last_pose = (pose, Instant::now()),
+                // An answer may still come, to a question that was another by then.
+                Err(DeviceError::Timeout { .. }) => self.looking_on = None,
+                Err(error) => return Err(error),
+            },
+            (Some(line), None) => self.last_pose = (ask_pose(line, deadline)?, Instant::now()),
+            (None, None) => self.last_pose = (ask_pose(&mut self.commands, deadline)?, Instant::now()),
             // The only connection is deaf now.
-            None if self.motion.is_some() => None,
-            None => Some(&mut self.commands),
-        };
-        if let Some(line) = line {
-            self.last_pose = (ask_pose(line, deadline)?, Instant::now());
+            (None, Some(_)) => {}
         }
         let (base_from_flange, received_at) = self.last_pose;
         let tool = if self.looking_on.is_some() {
@@ -121,7 +128,7 @@ impl RobotDriver for MappdkRobot {
         }
         let Xyzwpr(values) = Xyzwpr::from_pose(&motion.base_from_flange);
         if !values.iter().all(|value| value.abs() <= MAX_VALUE) {
-            return Err(refused("movep", "position-is-not-reachable"));
+            return Err(refused("movep", NOT_REACHABLE));
         }
         let start = ask_pose(&mut self.commands, deadline)?;
         self.motion = Some(Underway {
@@ -183,10 +190,16 @@ fn success(request: &str, reply: &Reply) -> Result<(), DeviceError> {
 }
 
 fn refused(request: &str, message: &str) -> DeviceError {
+    if message == NOT_REACHABLE {
+        return DeviceError::OutOfReach {
+            device: DEVICE,
+            request: request.to_owned(),
+            found: message.to_owned(),
+            remedy: "choose a pose nearer to the robot, or turn the wrist less; the arm keeps its configuration during a move"
+                .to_owned(),
+        };
+    }
     let remedy = match message {
-        "position-is-not-reachable" => {
-            "choose a pose nearer to the robot, or turn the wrist less; the arm keeps its configuration during a move"
-        }
         "PR[81]-was-not-set" => "free position register 81 for MAPPDK; it must not be locked by another program",
         "R[81]-was-not-set" | "R[82]-was-not-set" | "R[83]-was-not-set" => "free the registers 81 to 83 for MAPPDK",
         "cannot-convert-joint-vals" | "error-in-joint-values" => "check that robot and MAPPDK have as many axes",

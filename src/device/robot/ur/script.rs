@@ -13,6 +13,9 @@ pub const MAX_PROGRAM_BYTES: usize = 64 * 1024;
 pub struct UrPose(pub [f64; 6]);
 
 impl UrPose {
+    /// A tool point in the middle of the flange.
+    pub const AT_FLANGE: Self = Self([0.0; 6]);
+
     /// As the controller would write it.
     #[must_use]
     pub fn from_pose(base_from_tcp: &Transform<Base, Tcp>) -> Self {
@@ -59,6 +62,13 @@ pub enum Statement {
         /// What.
         value: i32,
     },
+    /// Says where on the flange the tool point is from now on.
+    SetTcp {
+        /// The tool point in the flange.
+        offset: UrPose,
+    },
+    /// Waits for the end of the controller's cycle: what was set before is then what the controller tells.
+    Sync,
     /// Slows the tool point down to a stand.
     StopL {
         /// Deceleration, m/s².
@@ -84,6 +94,8 @@ impl Statement {
             Self::WriteOutputInteger { register, value } => {
                 format!("write_output_integer_register({register}, {value})")
             }
+            Self::SetTcp { offset: UrPose(offset) } => format!("set_tcp(p[{}])", numbers(offset)),
+            Self::Sync => "sync()".to_owned(),
             Self::StopL { deceleration_m_s2 } => format!("stopl({deceleration_m_s2:.6})"),
             Self::StopJ { deceleration_rad_s2 } => format!("stopj({deceleration_rad_s2:.6})"),
         }
@@ -95,13 +107,13 @@ impl Statement {
         let arguments = Arguments::parse(arguments)?;
         match name.trim() {
             "movel" => Some(Self::MoveL {
-                pose: UrPose(arguments.vector?),
+                pose: arguments.pose?,
                 acceleration_m_s2: arguments.named("a", 0).unwrap_or(1.2),
                 speed_m_s: arguments.named("v", 1).unwrap_or(0.25),
                 time_s: arguments.named("t", 2).unwrap_or(0.0),
             }),
             "movej" => Some(Self::MoveJ {
-                joints_rad: arguments.vector?,
+                joints_rad: arguments.joints_rad?,
                 acceleration_rad_s2: arguments.named("a", 0).unwrap_or(1.4),
                 speed_rad_s: arguments.named("v", 1).unwrap_or(1.05),
             }),
@@ -109,6 +121,8 @@ impl Statement {
                 register: whole(arguments.named("register", 0)?)?.try_into().ok()?,
                 value: whole(arguments.named("value", 1)?)?,
             }),
+            "set_tcp" => Some(Self::SetTcp { offset: arguments.pose? }),
+            "sync" => Some(Self::Sync),
             "stopl" => Some(Self::StopL { deceleration_m_s2: arguments.named("a", 0).unwrap_or(20.0) }),
             "stopj" => Some(Self::StopJ { deceleration_rad_s2: arguments.named("a", 0)? }),
             _ => None,
@@ -116,22 +130,27 @@ impl Statement {
     }
 }
 
-/// Arguments of a call: at most one vector, then numbers by name or by place.
+/// Arguments of a call: at most one vector, then numbers by name or by place. Only its `p` tells a pose from joint angles.
 struct Arguments<'a> {
-    vector: Option<[f64; 6]>,
+    pose: Option<UrPose>,
+    joints_rad: Option<[f64; 6]>,
     numbers: Vec<(Option<&'a str>, f64)>,
 }
 
 impl<'a> Arguments<'a> {
     fn parse(text: &'a str) -> Option<Self> {
-        let (vector, rest) = match text.split_once('[') {
-            Some((before, inside)) if matches!(before.trim(), "" | "p") => {
+        let (pose, joints_rad, rest) = match text.split_once('[') {
+            Some((before, inside)) => {
                 let (inside, rest) = inside.split_once(']')?;
                 let values: Vec<f64> = inside.split(',').map(number).collect::<Option<_>>()?;
-                (Some(values.try_into().ok()?), rest.trim_start().trim_start_matches(','))
+                let (values, rest) = (values.try_into().ok()?, rest.trim_start().trim_start_matches(','));
+                match before.trim() {
+                    "p" => (Some(UrPose(values)), None, rest),
+                    "" => (None, Some(values), rest),
+                    _ => return None,
+                }
             }
-            Some(_) => return None,
-            None => (None, text),
+            None => (None, None, text),
         };
         let numbers = rest
             .split(',')
@@ -141,7 +160,7 @@ impl<'a> Arguments<'a> {
                 None => Some((None, number(argument)?)),
             })
             .collect::<Option<_>>()?;
-        Some(Self { vector, numbers })
+        Some(Self { pose, joints_rad, numbers })
     }
 
     /// The number of this name, or the one without a name at this place.
@@ -200,17 +219,24 @@ impl Program {
     /// # Errors
     /// [`MessageError`] if it is too long.
     pub fn len_of_first(bytes: &[u8]) -> Result<Option<usize>, MessageError> {
+        /// Each has an `end` of its own.
+        const OPENERS: [&[u8]; 5] = [b"def", b"sec", b"thread", b"if", b"while"];
         let mut end = 0;
-        let mut is_function = false;
+        let mut depth = 0_usize;
         for line in bytes.split_inclusive(|byte| *byte == b'\n') {
             if !line.ends_with(b"\n") {
                 break;
             }
             end += line.len();
-            let words = line.trim_ascii();
-            is_function |= words.starts_with(b"def ") || words.starts_with(b"sec ");
-            let is_blank = words.is_empty();
-            if (is_function && words == b"end") || (!is_function && !is_blank) {
+            let line = line.trim_ascii();
+            let is_of_word = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
+            let word = line.split(|byte| !is_of_word(byte)).next().unwrap_or_default();
+            if OPENERS.contains(&word) {
+                depth += 1;
+            } else if word == b"end" {
+                depth = depth.saturating_sub(1);
+            }
+            if depth == 0 && !line.is_empty() {
                 return Ok(Some(end));
             }
         }
@@ -241,7 +267,7 @@ impl Program {
                 break;
             }
             let statement = Statement::parse(line)
-                .ok_or_else(|| MessageError::new(line, "movel, movej, stopl, stopj or a register"))?;
+                .ok_or_else(|| MessageError::new(line, "movel, movej, set_tcp, sync, stopl, stopj or a register"))?;
             statements.push(statement);
         }
         Ok(Self { name, statements })

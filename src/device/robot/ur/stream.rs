@@ -71,14 +71,16 @@ impl Stream {
     /// The state now: what had arrived before is thrown away, for it may be old.
     pub(super) fn newest(&mut self, deadline: Instant) -> Result<UrState, DeviceError> {
         let request = "the state";
+        let start = Instant::now();
         loop {
-            match self.packet(request, Instant::now()) {
-                Ok(_) => {}
+            match self.packet_or_text(request, Instant::now()) {
+                Ok(_) => check_in_time(request, start, deadline)?,
                 Err(DeviceError::Timeout { .. }) => break,
                 Err(error) => return Err(error),
             }
         }
         loop {
+            check_in_time(request, start, deadline)?;
             // A recipe that was given up for another may still have a packet under way.
             if let ServerPacket::Data { recipe_id, values } = self.packet(request, deadline)?
                 && recipe_id == self.recipe_id
@@ -97,21 +99,39 @@ impl Stream {
 
     /// The next packet that is no text.
     fn packet(&mut self, request: &str, deadline: Instant) -> Result<ServerPacket, DeviceError> {
+        let start = Instant::now();
+        loop {
+            if let Some(packet) = self.packet_or_text(request, deadline)? {
+                return Ok(packet);
+            }
+            check_in_time(request, start, deadline)?;
+        }
+    }
+
+    /// The next packet; `None` if that is a text, which is kept where it warns.
+    fn packet_or_text(&mut self, request: &str, deadline: Instant) -> Result<Option<ServerPacket>, DeviceError> {
         /// 0 exception, 1 error, 2 warning.
         const WARNING: u8 = 2;
         let wrong = |error: MessageError| error.of(DEVICE, request, REMEDY);
-        loop {
-            let bytes = self.wire.receive(request, deadline, |bytes| rtde::packet_len(bytes).map_err(wrong))?;
-            match ServerPacket::parse(&bytes).map_err(wrong)? {
-                ServerPacket::Message(TextMessage { text, level, .. }) => {
-                    if level <= WARNING {
-                        self.last_warning = Some(text);
-                    }
+        let bytes = self.wire.receive(request, deadline, |bytes| rtde::packet_len(bytes).map_err(wrong))?;
+        Ok(match ServerPacket::parse(&bytes).map_err(wrong)? {
+            ServerPacket::Message(TextMessage { text, level, .. }) => {
+                if level <= WARNING {
+                    self.last_warning = Some(text);
                 }
-                packet => return Ok(packet),
+                None
             }
-        }
+            packet => Some(packet),
+        })
     }
+}
+
+/// A controller that sends faster than we read always has another packet there: that is no reason to go on for ever.
+fn check_in_time(request: &str, start: Instant, deadline: Instant) -> Result<(), DeviceError> {
+    if Instant::now() < deadline {
+        return Ok(());
+    }
+    Err(DeviceError::Timeout { device: DEVICE, request: request.to_owned(), waited: start.elapsed() })
 }
 
 fn unexpected(request: &str, found: &ServerPacket) -> DeviceError {

@@ -33,33 +33,39 @@ pub fn serve(world: &World, connection: &mut Connection) {
     }
 }
 
-/// Pushes profiles while the stream runs. The client sends nothing.
+/// Pushes the profiles of streams that are started from now on. The client sends nothing; the stream ends with it.
 pub fn serve_stream(world: &World, connection: &mut Connection) {
+    let mut seen = world.stream().number;
+    // The next profile, while a stream runs.
     let mut next = None;
     while connection.take_arrived(STREAM_LOOK).is_some() {
-        match (world.stream_from(), next) {
-            (Some(from), _) => {
-                let (newest, _) = world.trigger_counts();
-                // What could not be sent in time is left out.
-                let first = next.unwrap_or(from).max(newest.saturating_sub(MAX_BEHIND));
-                for trigger_count in first..=newest {
-                    let profiles = vec![raw_profile(world, trigger_count)];
-                    let whole = ProfileReply { profiles, ..scales(world) }.encode();
-                    if !connection.send(&whole[INFO_LEN..]) {
-                        return;
-                    }
-                }
-                next = Some(first.max(newest.saturating_add(1)));
+        let stream = world.stream();
+        let is_another = stream.number != seen;
+        if next.is_some() && (is_another || stream.from.is_none()) {
+            next = None;
+            if !connection.send(&STREAM_STOPPED) {
+                break;
             }
-            (None, Some(_)) => {
-                next = None;
-                if !connection.send(&STREAM_STOPPED) {
-                    return;
-                }
-            }
-            (None, None) => {}
         }
+        if is_another {
+            seen = stream.number;
+            next = stream.from;
+        }
+        let Some(first) = next else { continue };
+        let (newest, _) = world.trigger_counts();
+        // What could not be sent in time is left out.
+        let first = first.max(newest.saturating_sub(MAX_BEHIND));
+        let is_sent = (first..=newest).all(|trigger_count| {
+            let profiles = vec![raw_profile(world, trigger_count)];
+            let whole = ProfileReply { profiles, ..scales(world) }.encode();
+            connection.send(&whole[INFO_LEN..])
+        });
+        if !is_sent {
+            break;
+        }
+        next = Some(first.max(newest.saturating_add(1)));
     }
+    world.end_stream(seen);
 }
 
 /// The data of the reply, or the code of the refusal.
@@ -87,11 +93,11 @@ fn answer(world: &World, request: &Request) -> Result<Vec<u8>, u8> {
         (PREPARE_STREAM, [position @ 0..=2, _, _, _]) => Ok(prepare_stream(world, *position)),
         (START_STREAM, [PREPARE_STREAM, _, _, _, start_code @ ..]) => {
             let start = start_code.try_into().map(u32::from_le_bytes).map_err(|_| code::COMMAND_LENGTH)?;
-            world.set_stream(Some(start));
+            world.start_stream(start);
             Ok(Vec::new())
         }
         (STOP_STREAM, _) => {
-            world.set_stream(None);
+            world.end_stream(world.stream().number);
             Ok(Vec::new())
         }
         (command::CHANGE_PROGRAM | PREPARE_STREAM | START_STREAM, [_, _, _, _, ..]) => Err(code::PARAMETER),
@@ -102,11 +108,11 @@ fn answer(world: &World, request: &Request) -> Result<Vec<u8>, u8> {
 
 /// The settings do not change: 0 stands for a continuous trigger, batch off, and so on.
 fn setting(wanted: SettingRequest) -> Vec<u8> {
-    /// Within the triggers of a program; 3 is [`TRIGGERS_PER_S`] of 100.
+    /// Category and item within a program; 6 is 1 kHz, as the world has it.
     const SAMPLING: [u8; 2] = [0, 2];
-    const SAMPLING_100_HZ: u8 = 3;
+    const SAMPLING_1_KHZ: u8 = 6;
     let is_sampling = wanted.kind >= SettingRequest::FIRST_PROGRAM && [wanted.category, wanted.item] == SAMPLING;
-    vec![if is_sampling { SAMPLING_100_HZ } else { 0 }, 0, 0, 0]
+    vec![if is_sampling { SAMPLING_1_KHZ } else { 0 }, 0, 0, 0]
 }
 
 /// Begin and end of a batch.

@@ -5,7 +5,7 @@ use crate::device::sim::fault::Fault;
 use crate::device::sim::motion::Speed;
 use crate::device::sim::net::Connection;
 use crate::device::sim::world::{MotionError, Order, World};
-use crate::geometry::Transform;
+use crate::geometry::{Rigid, Transform};
 
 /// A flange that turns while its middle goes a little way may turn so fast, rad/s.
 const TURNING_RAD_S: f64 = 1.5;
@@ -45,7 +45,7 @@ fn answer(world: &World, connection: &Connection, command: &Command) -> Option<R
         }
         Command::CurJPos => Reply::ok(messages::encode_joints(&world.arm().shown_deg)),
         Command::InsPwr => Reply::ok(if world.arm().is_moving { "0.412" } else { "0.105" }),
-        Command::MoveJ(motion) => return go(world, connection, order_of_joints(motion)),
+        Command::MoveJ(motion) => return go(world, connection, order_of_joints(world, motion)),
         Command::MoveP(motion) => return go(world, connection, order_of_pose(motion)),
         // There are no programs, outputs or variables in this controller: what is set is taken, and nothing is on.
         Command::MappdkCall(_)
@@ -77,16 +77,25 @@ fn order_of_pose(motion: &Motion) -> Result<Order, &'static str> {
     let values: [f64; 6] = motion.values.as_slice().try_into().map_err(|_| "PR[81]-was-not-set")?;
     let base_from_flange = *Xyzwpr(values).pose().rigid();
     Ok(if motion.is_linear {
-        let speed = Speed { linear_mm_s: f64::from(motion.speed), turning_rad_s: TURNING_RAD_S };
-        Order::Straight { base_from_flange, speed }
+        straight(base_from_flange, motion.speed)
     } else {
         Order::ByJoints { base_from_flange, speed_part: percent(motion.speed) }
     })
 }
 
-fn order_of_joints(motion: &Motion) -> Result<Order, &'static str> {
+fn order_of_joints(world: &World, motion: &Motion) -> Result<Order, &'static str> {
     let shown_deg = motion.values.as_slice().try_into().map_err(|_| "error-in-joint-values")?;
-    Ok(Order::ToJoints { shown_deg, speed_part: percent(motion.speed) })
+    Ok(if motion.is_linear {
+        straight(world.flange_at(shown_deg), motion.speed)
+    } else {
+        Order::ToJoints { shown_deg, speed_part: percent(motion.speed) }
+    })
+}
+
+/// Where a move is straight its speed is one in mm/s.
+fn straight(base_from_flange: Rigid, speed_mm_s: u16) -> Order {
+    let speed = Speed { linear_mm_s: f64::from(speed_mm_s), turning_rad_s: TURNING_RAD_S };
+    Order::Straight { base_from_flange, flange_from_tcp: Rigid::identity(), speed }
 }
 
 fn percent(speed: u16) -> f64 {
@@ -101,5 +110,30 @@ fn error_of_wrong_fields(line: &str) -> &'static str {
         Some("getrdo" | "setrdo") => "wrong-rdo-value",
         Some("getdout" | "setdout") => "wrong-dout-value",
         _ => "wrong-command",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::device::sim::SimOptions;
+
+    #[test]
+    fn joints_are_gone_to_straight_in_mm_a_second_where_that_is_asked_for() {
+        let world = World::new(&SimOptions::default());
+        let arm = world.arm();
+        let motion = Motion {
+            speed: 40,
+            acceleration_percent: 100,
+            corner: 0,
+            is_linear: false,
+            values: arm.shown_deg.to_vec(),
+        };
+        let by_joints = Order::ToJoints { shown_deg: arm.shown_deg, speed_part: 0.4 };
+        assert_eq!(order_of_joints(&world, &motion), Ok(by_joints));
+        let straight = order_of_joints(&world, &Motion { is_linear: true, ..motion });
+        let Ok(Order::Straight { base_from_flange, speed, .. }) = straight else { panic!("{straight:?}") };
+        assert!((speed.linear_mm_s - 40.0).abs() < 1e-12);
+        assert!((base_from_flange.translation.vector - arm.base_from_flange.translation.vector).norm() < 1e-9);
     }
 }

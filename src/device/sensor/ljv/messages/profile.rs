@@ -22,8 +22,9 @@ pub struct ProfileRequest {
 }
 
 impl ProfileRequest {
-    /// The newest one; it is not given a second time.
-    pub const NEWEST: Self = Self { bank: 0, position: 0, profile_no: 0, count: 1, erases: true };
+    /// The newest one; it is not given a second time. Position 0 has no use for the number: it is the one that the drivers
+    /// send which were used with real controllers.
+    pub const NEWEST: Self = Self { bank: 0, position: 0, profile_no: 1, count: 1, erases: true };
     /// None, only what is said of all: a question whether profiles can be had.
     pub const NONE: Self = Self { count: 0, erases: false, ..Self::NEWEST };
 

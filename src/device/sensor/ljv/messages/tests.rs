@@ -19,11 +19,11 @@ fn check_request(request: &Request, golden: &str) {
 fn golden_requests() {
     check_request(
         &Request::new(command::GET_PROFILE, ProfileRequest::NEWEST.encode()),
-        "20000000 0100f000 00000000 14000000 42000000 00000000 00000000 00000000 01010000",
+        "20000000 0100f000 00000000 14000000 42000000 00000000 00000000 01000000 01010000",
     );
     check_request(
         &Request::new(command::GET_PROFILE, ProfileRequest::NONE.encode()),
-        "20000000 0100f000 00000000 14000000 42000000 00000000 00000000 00000000 00000000",
+        "20000000 0100f000 00000000 14000000 42000000 00000000 00000000 01000000 00000000",
     );
     check_request(
         &Request::new(command::CHANGE_PROGRAM, vec![7, 0, 0, 0]),
