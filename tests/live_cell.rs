@@ -10,8 +10,9 @@ use handeye::app::cell::{Activity, CellCommand, CellSettings, StationRoutine};
 use handeye::app::compare::distance_from_truth;
 use handeye::app::{Command, NoticeKind, RecoverySettings, Workbench};
 use handeye::calibrate::{Method, Solution};
-use handeye::device::sim::{Fault, FaultSpec, SimOptions};
+use handeye::device::sim::{Fault, FaultSpec, Head, SimOptions};
 use handeye::device::{LinkState, MotionRefusal, RobotKind, RoutineEnd, SearchPhase, SensorKind, WorkspaceBox};
+use handeye::geometry::Vec3;
 use handeye::session::{Edit, Row, Session, Target};
 
 /// Long past anything that is waited for here, on a slow machine as well.
@@ -127,6 +128,11 @@ impl Bench {
     }
 }
 
+/// Where the robot says that it is, mm.
+fn position_mm(workbench: &Workbench) -> Vec3 {
+    workbench.cell().robot.latest.as_ref().expect("reports").base_from_flange.translation_mm()
+}
+
 fn recoverable_in(folder: &Path) -> Bench {
     let mut bench = Bench::new();
     bench.workbench.keep_copies(RecoverySettings { folder: folder.to_owned(), interval: Duration::ZERO });
@@ -214,14 +220,22 @@ fn a_stop_a_disarming_a_disconnection_and_a_closed_document_each_stop_the_robot(
         ("another session", |bench| bench.workbench.apply(Command::NewSession(Target::ball(10.0)))),
     ];
     for (what, way) in ways {
-        let mut bench = Bench::practising(2, SLOW).armed();
-        // A slow search: its moves take their time.
-        bench.change_settings(|settings| settings.limits.search_speed_mm_s = 1.0);
-        bench.cell(CellCommand::FindLargestArc);
-        bench.wait("a capture and then a move", |workbench| {
-            workbench.cell().search.is_some() && workbench.cell().activity == Activity::Moving
-        });
+        // A head that sees a large ball from far away: another view of it is a long way off.
+        let head = Head::by_id("lj-v7300").expect("there is one");
+        let robot = RobotKind::UniversalRobots;
+        let options = SimOptions { seed: 2, time_scale: SLOW, robot, head, radius_mm: 30.0, ..SimOptions::default() };
+        let mut bench = Bench::new().practise_with(&options).armed();
+        bench.cell(CellCommand::CaptureStation);
+        bench.wait_for_rest();
         let num_captures = bench.session().num_captures();
+        bench.change_settings(|settings| settings.limits.transit_speed_mm_s = 5.0);
+        bench.cell(CellCommand::ProposeStation);
+        bench.wait("a proposal", |workbench| workbench.cell().proposal.is_some());
+        let proposal = bench.workbench.cell().proposal.clone().expect("proposed");
+        assert!(proposal.distance_mm > 100.0, "{proposal:?}");
+        let from_mm = position_mm(&bench.workbench);
+        bench.cell(CellCommand::AcceptProposal);
+        bench.wait("the robot to set out", |workbench| (position_mm(workbench) - from_mm).norm() > 3.0);
         way(&mut bench);
         bench.wait_for_rest();
         assert!(
@@ -230,6 +244,9 @@ fn a_stop_a_disarming_a_disconnection_and_a_closed_document_each_stop_the_robot(
             bench.last_end()
         );
         bench.check_robot_stands();
+        // What is left would take some seconds.
+        let left_mm = (position_mm(&bench.workbench) - proposal.station.base_from_flange.translation_mm()).norm();
+        assert!(left_mm > 40.0, "{what}: {left_mm} mm before the target");
         match what {
             "close" => assert!(bench.workbench.document().is_none()),
             "another session" => assert_eq!(bench.session().num_captures(), 0),

@@ -78,6 +78,8 @@ pub struct SimTruth {
     pub ball_in_base: Vec3,
     /// Its radius, mm.
     pub radius_mm: f64,
+    /// How far [`Fault::BallMoved`] pushes it, mm.
+    pub push_mm: Vec3,
     /// The mounting as a drawing would have it: off by some degrees and millimetres.
     pub rough_flange_from_sensor: Rigid,
     /// Noise of the robot's pose: mm, degrees.
@@ -138,6 +140,12 @@ impl SimCell {
             ports: served,
             servers,
         })
+    }
+
+    /// Where the arm holds the flange now, whatever the controller tells: `base_from_flange`.
+    #[must_use]
+    pub fn base_from_flange(&self) -> Rigid {
+        self.servers.world().arm().base_from_flange
     }
 
     /// One more fault, its counts from now on.

@@ -258,6 +258,7 @@ impl World {
             flange_from_sensor: self.layout.flange_from_sensor,
             ball_in_base: self.layout.ball_in_base,
             radius_mm: self.scene.radius_mm,
+            push_mm: PUSH_MM,
             rough_flange_from_sensor: self.layout.rough_flange_from_sensor,
             pose_std_mm_deg: [self.pose_std[0], self.pose_std[1].to_degrees()],
             profile_std_mm: self.scene.profile_std_mm,
