@@ -41,8 +41,12 @@ struct RobotDuty {
 impl RobotDuty {
     fn report(&self, driver: &mut Robot, post: &Post<RobotRequest>) -> Result<RobotReport, DeviceError> {
         let report = driver.report(Instant::now() + self.deadlines.request)?;
-        *lock(&self.latest) = Some(report.clone());
-        post.tell();
+        let before = lock(&self.latest).replace(report.clone());
+        // A robot that stands tells the same again and again, which is no news.
+        let is_known = before.is_some_and(|before| RobotReport { received_at: report.received_at, ..before } == report);
+        if !is_known {
+            post.tell();
+        }
         Ok(report)
     }
 

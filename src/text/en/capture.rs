@@ -420,6 +420,8 @@ pub fn limits(speed_mm_s: &str, move_mm: &str) -> String {
 pub const STOP: &str = "Stop";
 /// The same in other steps.
 pub const STOP_ROBOT: &str = "Stop the robot";
+/// Beside it, above a question.
+pub const STILL_AT_WORK: &str = "The robot is at work behind this question, and goes on.";
 /// On hover.
 pub const STOP_HINT: &str =
     "Stops the robot first, then the routine. Space and Escape do the same. What was captured stays.";

@@ -18,7 +18,8 @@ pub fn number_row(ui: &mut Ui, label: &str, hint: &str, field: DragValue<'_>) ->
 pub fn number(ui: &mut Ui, name: &str, hint: &str, field: DragValue<'_>) -> bool {
     ui.spacing_mut().interact_size = vec2(72.0, 22.0);
     ui.spacing_mut().button_padding.x = 6.0;
-    let mut response = ui.add(field);
+    // Half a number is none: it counts once it was entered or left.
+    let mut response = ui.add(field.update_while_editing(false));
     if !hint.is_empty() {
         response = response.on_hover_text(hint);
     }

@@ -30,9 +30,6 @@ pub fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
             Frame::new().inner_margin(Margin::symmetric(12, 8)).show(ui, |ui| {
                 ui.set_width(ui.available_width());
                 let radius_mm = desk.view.ball_radius_mm().unwrap_or(f64::INFINITY);
-                for problem in problems(&settings, radius_mm, desk.view.cell.robot.latest.as_ref()) {
-                    remark(ui, "!", problem, theme::palette(ui).bad);
-                }
                 // A section still opens while its fields are not to be changed.
                 let is_free = !desk.view.cell.are_settings_in_use();
                 if !is_free {
@@ -59,6 +56,10 @@ pub fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
                         ui.scroll_to_cursor(None);
                     }
                 });
+                // Below all fields, so that none moves, nor loses what is being typed, when something is to be said.
+                for problem in problems(&settings, radius_mm, desk.view.cell.robot.latest.as_ref()) {
+                    remark(ui, "!", problem, theme::palette(ui).bad);
+                }
             });
         },
     );

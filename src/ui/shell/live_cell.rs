@@ -1,12 +1,18 @@
 //! What the window itself does about the live cell: stop comes first, and what was set is remembered.
 
-use egui::{Context, Event, Key};
+use egui::{Align2, Area, Context, Event, Frame, Id, Key, Order, vec2};
 
 use crate::app::Command;
 use crate::app::cell::{CellCommand, CellView};
+use crate::text::capture as words;
 use crate::ui::capture::model::may_be_moving;
+use crate::ui::capture::stop_button;
+use crate::ui::theme;
 
 use super::Shell;
+
+/// Where the stop stands above a question, points below the window's edge.
+const DISTANCE_FROM_TOP: f32 = 56.0;
 
 /// How the cell was in the last frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -40,6 +46,27 @@ pub fn takes_stop_key(ctx: &Context, cell: &CellView) -> bool {
         });
         input.events.len() < num_before
     })
+}
+
+/// What covers the window leaves the robot's stop in reach, and says why it is there.
+pub fn stop_above_all(ctx: &Context, cell: &CellView, commands: &mut Vec<Command>) {
+    if !may_be_moving(cell) {
+        return;
+    }
+    let area = Area::new(Id::unique("stop above all"))
+        .order(Order::Tooltip)
+        .anchor(Align2::CENTER_TOP, vec2(0.0, DISTANCE_FROM_TOP))
+        .movable(false);
+    area.show(ctx, |ui| {
+        Frame::window(ui.style()).inner_margin(12).show(ui, |ui| {
+            ui.horizontal(|ui| {
+                if stop_button(ui, vec2(0.0, 36.0), words::STOP_ROBOT, true) {
+                    commands.push(stop());
+                }
+                ui.label(theme::strong(words::STILL_AT_WORK));
+            });
+        });
+    });
 }
 
 impl Shell {

@@ -224,6 +224,9 @@ impl Shell {
         self.history.show(&ctx, &self.workbench, &mut commands);
         import::show(&ctx, &self.workbench, &mut self.import, &mut self.persisted.imports, &mut commands);
         self.questions(&ctx);
+        if is_asking || is_importing || self.is_help_open || self.history.is_open {
+            live_cell::stop_above_all(&ctx, self.workbench.cell(), &mut commands);
+        }
         self.stop_first(&mut commands);
         // What was typed comes first: an action in the same frame is about it.
         for command in std::mem::take(&mut commands) {

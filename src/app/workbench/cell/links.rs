@@ -85,11 +85,10 @@ impl Workbench {
         if let Some(robot) = &self.cell.robot {
             let (client, view) = (robot.client(), &mut self.cell.view.robot);
             view.state = client.link_state(now);
-            if client.take_news() {
-                changed = true;
-                if !is_replaying {
-                    view.latest = client.latest();
-                }
+            changed |= client.take_news();
+            // Also without news: when it was told last is known by it.
+            if !is_replaying {
+                view.latest = client.latest();
             }
         }
         let ball = self.ball();
