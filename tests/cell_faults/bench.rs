@@ -80,8 +80,9 @@ impl Cell {
     pub fn poll(&mut self) {
         self.woken.recv_timeout(Duration::from_millis(2)).ok();
         self.workbench.poll();
-        // During a search there is a report of it.
-        self.has_set_out |= self.view().activity == Activity::Moving && self.view().search.is_none();
+        // On the way to a station the last search stays in sight, ended.
+        let is_searching = self.view().search.as_ref().is_some_and(|report| report.end.is_none());
+        self.has_set_out |= self.view().activity == Activity::Moving && !is_searching;
         if let Some(report) = self.view().search.clone().filter(|report| !report.points.is_empty()) {
             self.searches.insert(self.session().stations.len(), report);
         }

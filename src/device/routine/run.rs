@@ -18,6 +18,10 @@ use crate::watch::Wake;
 use super::control::{Control, StopWanted};
 use super::{Measurement, RoutineEnd, RoutineEvent, Task};
 
+/// A move may take so many times as long as by its speed: the override on the pendant may be a tenth. A robot that does not
+/// answer is noticed long before.
+const SLOWEST_OVERRIDE: u32 = 10;
+
 pub(super) struct Runner {
     pub task: Task,
     pub robot: RobotClient,
@@ -163,7 +167,7 @@ impl Runner {
         let arming = self.task.arming.ok_or(MotionRefusal::NotArmed)?;
         let motion = arming.check(&readiness, &base_from_flange, target, speed_mm_s)?;
         self.tell(RoutineEvent::Moving { base_from_flange: *target });
-        let patience = 3 * duration_of(&motion, &base_from_flange) + self.robot.deadlines().beyond_move;
+        let patience = SLOWEST_OVERRIDE * duration_of(&motion, &base_from_flange) + self.robot.deadlines().beyond_move;
         self.has_moved.set(true);
         // There is no sense in a long way to where nothing can be measured.
         Ok(self.robot.move_while(motion, patience, || self.sensor.check_connection())?)

@@ -34,7 +34,7 @@ pub struct Deadlines {
     pub stop: Duration,
     /// For a profile that is later than the move before it.
     pub profile: Duration,
-    /// For a move, beyond three times what it should take by its speed.
+    /// For a move, beyond what it takes by its speed at a tenth of the override.
     pub beyond_move: Duration,
 }
 

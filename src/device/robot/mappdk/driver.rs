@@ -22,6 +22,8 @@ const LOOK: Duration = Duration::from_millis(5);
 const NOT_REACHABLE: &str = "position-is-not-reachable";
 /// The server that looks on must not hold up a stop for longer.
 const LOOKING_ON_PATIENCE: Duration = Duration::from_millis(200);
+/// A piece takes half a second at full override. So long without its end, at an override of a twentieth, and nobody is there.
+const PIECE_PATIENCE: Duration = Duration::from_secs(10);
 /// Columns of a value hold six digits before the point.
 const MAX_VALUE: f64 = 999_999.0;
 
@@ -144,7 +146,13 @@ impl RobotDriver for MappdkRobot {
         let Some(motion) = &mut self.motion else { return Ok(MoveState::Done) };
         if motion.is_piece_running {
             let patience = deadline.saturating_duration_since(Instant::now()).min(LOOK);
-            let Some(reply) = self.commands.reply_within("movep", patience)? else { return Ok(MoveState::Moving) };
+            let Some(reply) = self.commands.reply_within("movep", patience)? else {
+                let waited = motion.piece_sent_at.elapsed();
+                if waited < PIECE_PATIENCE {
+                    return Ok(MoveState::Moving);
+                }
+                return Err(DeviceError::Timeout { device: DEVICE, request: "movep".to_owned(), waited });
+            };
             motion.is_piece_running = false;
             if let Err(error) = success("movep", &reply) {
                 self.motion = None;
