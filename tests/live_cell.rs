@@ -10,7 +10,7 @@ use handeye::app::cell::{Activity, CellCommand, CellSettings, StationRoutine};
 use handeye::app::compare::distance_from_truth;
 use handeye::app::{Command, NoticeKind, RecoverySettings, Workbench};
 use handeye::calibrate::{Method, Solution};
-use handeye::device::sim::{Fault, FaultSpec, SimOptions};
+use handeye::device::sim::{Fault, FaultSpec, SimCell, SimOptions};
 use handeye::device::{LinkState, MotionRefusal, RobotKind, RoutineEnd, SearchPhase, SensorKind, WorkspaceBox};
 use handeye::session::{Edit, Row, Session, Target};
 
@@ -55,6 +55,20 @@ impl Bench {
         });
         self.change_settings(|settings| settings.settle.settle_ms = 5);
         self
+    }
+
+    /// A session of its own, with a cell that is not for practice.
+    fn connected_to(sim: &SimCell) -> Self {
+        let mut bench = Self::new();
+        bench.workbench.apply(Command::NewSession(Target::ball(sim.truth.radius_mm)));
+        bench.cell(CellCommand::ConnectRobot(sim.robot_setup.clone()));
+        bench.cell(CellCommand::ConnectSensor(sim.sensor_setup.clone()));
+        bench.wait("the links", |workbench| {
+            let cell = workbench.cell();
+            cell.robot.state == LinkState::Ready && cell.robot.latest.is_some() && cell.live.is_some()
+        });
+        bench.change_settings(|settings| settings.settle.settle_ms = 5);
+        bench
     }
 
     fn armed(mut self) -> Self {
@@ -102,6 +116,10 @@ impl Bench {
     fn solution(&self) -> &Solution {
         let results = self.workbench.results().expect("solved");
         results.method(Method::BallBundle).expect("run").outcome.as_ref().expect("solved")
+    }
+
+    fn num_errors(&self) -> usize {
+        self.workbench.notices().iter().filter(|notice| notice.kind == NoticeKind::Error).count()
     }
 
     fn last_end(&self) -> &RoutineEnd {
@@ -213,8 +231,11 @@ fn a_stop_a_disarming_a_disconnection_and_a_closed_document_each_stop_the_robot(
         ("close", |bench| bench.workbench.apply(Command::CloseDocument)),
         ("another session", |bench| bench.workbench.apply(Command::NewSession(Target::ball(10.0)))),
     ];
+    // Practice ends with its document; a cell of its own goes on.
+    let options = SimOptions { seed: 2, time_scale: SLOW, ..SimOptions::default() };
     for (what, way) in ways {
-        let mut bench = Bench::practising(2, SLOW).armed();
+        let sim = SimCell::start(&options).expect("ports are free");
+        let mut bench = Bench::connected_to(&sim).armed();
         // A slow search: its moves take their time.
         bench.change_settings(|settings| settings.limits.search_speed_mm_s = 1.0);
         bench.cell(CellCommand::FindLargestArc);
@@ -224,11 +245,14 @@ fn a_stop_a_disarming_a_disconnection_and_a_closed_document_each_stop_the_robot(
         let num_captures = bench.session().num_captures();
         way(&mut bench);
         bench.wait_for_rest();
-        assert!(
-            matches!(bench.last_end(), RoutineEnd::Stopped { robot_stopped: Some(true) }),
-            "{what}: {:?}",
-            bench.last_end()
-        );
+        let end = bench.workbench.cell().last_end.clone();
+        let is_past = matches!(what, "close" | "another session");
+        match end {
+            None => assert!(is_past, "{what}: nothing is told of how it ended"),
+            Some(RoutineEnd::Stopped { robot_stopped: Some(true) }) => assert!(!is_past, "{what}"),
+            end => panic!("{what}: {end:?}"),
+        }
+        assert_eq!(bench.num_errors(), 0, "{what}: {:?}", bench.workbench.notices());
         bench.check_robot_stands();
         match what {
             "close" => assert!(bench.workbench.document().is_none()),
@@ -411,10 +435,58 @@ fn what_a_routine_was_begun_with_holds_to_its_end() {
 }
 
 #[test]
-fn another_document_is_not_armed() {
-    let mut bench = Bench::practising(18, FAST).armed();
+fn practice_ends_with_its_document_and_tells_of_no_danger() {
+    let mut bench = searching(18, 2);
     bench.workbench.apply(Command::NewSession(Target::ball(10.0)));
-    assert!(!bench.workbench.cell().is_armed);
+    bench.wait_for_rest();
+    let cell = bench.workbench.cell();
+    assert!(!cell.is_armed && !cell.is_practice && cell.robot.state == LinkState::Off && cell.last_end.is_none());
+    assert!(cell.sensor.state == LinkState::Off && cell.search.is_none() && !cell.is_stop_unconfirmed());
+    assert_eq!(bench.session().num_captures(), 0);
+    assert_eq!(bench.num_errors(), 0, "{:?}", bench.workbench.notices());
+
+    let mut bench = Bench::practising(18, SLOW).armed();
+    bench.cell(CellCommand::StartRun { num_stations: 3 });
+    bench.wait("a move", |workbench| workbench.cell().activity == Activity::Moving);
+    bench.cell(CellCommand::EndPractice);
+    bench.wait_for_rest();
+    assert!(bench.workbench.cell().last_end.is_none());
+    assert_eq!(bench.num_errors(), 0, "{:?}", bench.workbench.notices());
+    assert_eq!(bench.workbench.notices().len(), 1, "{:?}", bench.workbench.notices());
+}
+
+#[test]
+fn a_stop_gives_one_line_and_a_run_belongs_to_itself() {
+    let mut bench = Bench::practising(20, SLOW).armed();
+    for _ in 0..2 {
+        bench.cell(CellCommand::StartRun { num_stations: 3 });
+        bench.wait("a move", |workbench| workbench.cell().activity == Activity::Moving);
+        bench.cell(CellCommand::Stop);
+        bench.wait_for_rest();
+        assert_eq!(bench.workbench.notices().len(), 1, "{:?}", bench.workbench.notices());
+        assert_eq!(bench.num_errors(), 0);
+        assert!(bench.workbench.cell().run.is_some());
+    }
+    bench.cell(CellCommand::CaptureStation);
+    assert_eq!(bench.workbench.cell().run, None);
+    bench.wait_for_rest();
+    // The second run goes elsewhere first: where it stands there is a station.
+    let num_stations = bench.session().stations.len();
+    bench.change_settings(|settings| settings.asks_before_motion = true);
+    bench.cell(CellCommand::StartRun { num_stations: 2 });
+    bench.wait("a proposal", |workbench| workbench.cell().run.is_some_and(|run| run.is_asking));
+    assert_eq!(bench.session().stations.len(), num_stations);
+    bench.workbench.apply(Command::NewSession(Target::ball(10.0)));
+    assert_eq!(bench.workbench.cell().run, None);
+}
+
+#[test]
+fn a_run_that_could_not_go_on_is_not_begun() {
+    let mut bench = Bench::practising(21, FAST).armed();
+    bench.change_settings(|settings| settings.mounting = None);
+    bench.cell(CellCommand::StartRun { num_stations: 2 });
+    assert!(bench.last_notice().contains("how the sensor is mounted"), "{}", bench.last_notice());
+    assert!(bench.workbench.cell().run.is_none() && !bench.workbench.cell().is_busy());
 }
 
 #[test]

@@ -25,6 +25,8 @@ pub(super) struct Measuring {
     pub routine: Routine,
     /// The document that its captures belong to; `None` once that has left the bench.
     document_id: Option<u64>,
+    /// Whether that has left the bench.
+    has_left: bool,
     /// All captures of the station are one step of undo.
     gesture: u64,
     label: String,
@@ -43,6 +45,12 @@ impl Measuring {
     /// Nothing more is taken from it.
     pub fn give_up(&mut self) {
         self.document_id = None;
+    }
+
+    /// The document leaves the bench, and how this ends says nothing of the next one.
+    pub fn leave_document(&mut self) {
+        self.give_up();
+        self.has_left = true;
     }
 
     /// The station with the most of what was captured.
@@ -76,9 +84,9 @@ impl Workbench {
 
     fn measure_by_hand(&mut self, routine: StationRoutine) {
         if self.cell.run.is_some() {
-            self.notify(NoticeKind::Error, words::BUSY.to_owned());
+            self.notify_of_cell(NoticeKind::Error, words::BUSY.to_owned());
         } else if let Err(reason) = self.measure_station(None, routine) {
-            self.notify(NoticeKind::Error, reason);
+            self.notify_of_cell(NoticeKind::Error, reason);
         }
     }
 
@@ -116,6 +124,7 @@ impl Workbench {
         self.cell.measuring = Some(Measuring {
             routine: Routine::start(task, robot, sensor, self.wake.clone()),
             document_id: Some(document.id),
+            has_left: false,
             gesture: new_gesture(),
             label,
             go_to,
@@ -126,6 +135,10 @@ impl Workbench {
         });
         self.end_replay();
         self.forget_proposal();
+        if self.cell.run.is_none() {
+            // One station by itself: the progress of an earlier run is not its own.
+            self.cell.view.run = None;
+        }
         self.cell.view.last_end = None;
         self.cell.view.activity = if go_to.is_some() { Activity::Moving } else { Activity::Settling };
         Ok(())
@@ -210,7 +223,7 @@ impl Workbench {
         if is_taken_back {
             measuring.give_up();
             self.stop_cell();
-            self.notify(NoticeKind::Error, words::STATION_TAKEN_BACK.to_owned());
+            self.notify_of_cell(NoticeKind::Error, words::STATION_TAKEN_BACK.to_owned());
         }
         is_taken_back
     }
@@ -218,7 +231,9 @@ impl Workbench {
     fn end_routine(&mut self, end: &RoutineEnd) {
         let Some(measuring) = self.cell.measuring.take() else { return };
         self.cell.view.activity = Activity::Idle;
-        self.cell.view.last_end = Some(end.clone());
+        if !measuring.has_left || may_still_move(end) {
+            self.cell.view.last_end = Some(end.clone());
+        }
         if !measuring.has_searched {
             // That of the station before was shown on the way; it is not this one's.
             self.cell.view.search = None;
@@ -229,8 +244,13 @@ impl Workbench {
             return;
         }
         let num_captures = if measuring.document_id.is_some() { measuring.profiles.len() } else { 0 };
-        if let Some(message) = words::routine_ended(&words::station(&measuring.label), num_captures, end) {
-            self.notify(NoticeKind::Error, message);
+        if let RoutineEnd::Stopped { robot_stopped: Some(true) } = end {
+            // The line of its run says so already.
+            if self.cell.view.run.is_none() && !measuring.has_left {
+                self.notify_of_stop(words::stopped(&words::station(&measuring.label), num_captures));
+            }
+        } else if let Some(message) = words::routine_ended(&words::station(&measuring.label), num_captures, end) {
+            self.notify_of_cell(NoticeKind::Error, message);
         }
         if let RoutineEnd::Searched(SearchEnd::Found { peak_mm, peak_std_mm }) = end {
             self.note_peak(&measuring, *peak_mm, *peak_std_mm);
@@ -264,6 +284,14 @@ impl Workbench {
         let label = capture_label(&words::station(&measuring.label));
         self.edit_as(&edit, Some(measuring.gesture), label);
     }
+}
+
+/// Whether nobody knows that the robot stands.
+fn may_still_move(end: &RoutineEnd) -> bool {
+    matches!(
+        end,
+        RoutineEnd::Failed { robot_stopped, .. } | RoutineEnd::Stopped { robot_stopped } if *robot_stopped != Some(true)
+    )
 }
 
 /// The pose that the robot would not go to. A refusal of something else than the target may have come when it was on the

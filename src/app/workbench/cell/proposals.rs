@@ -77,7 +77,7 @@ impl Proposing {
 impl Workbench {
     pub(super) fn want_proposal(&mut self) {
         if self.cell.measuring.is_some() {
-            self.notify(NoticeKind::Error, words::BUSY.to_owned());
+            self.notify_of_cell(NoticeKind::Error, words::BUSY.to_owned());
             return;
         }
         self.cell.view.proposal = None;
@@ -144,7 +144,7 @@ impl Workbench {
         if self.cell.run.is_some() {
             self.end_run(Some(reason));
         } else {
-            self.notify(NoticeKind::Error, reason);
+            self.notify_of_cell(NoticeKind::Error, reason);
         }
     }
 
@@ -181,13 +181,13 @@ impl Workbench {
 
     pub(super) fn accept_proposal(&mut self) {
         let Some(proposal) = &self.cell.view.proposal else {
-            self.notify(NoticeKind::Error, words::NO_PROPOSAL.to_owned());
+            self.notify_of_cell(NoticeKind::Error, words::NO_PROPOSAL.to_owned());
             return;
         };
         let target = proposal.station.base_from_flange;
         if let Some(refusal) = &proposal.refusal {
             let reason = refusal.to_string();
-            self.notify(NoticeKind::Error, reason);
+            self.notify_of_cell(NoticeKind::Error, reason);
             return;
         }
         let routine = self.cell.view.settings.routine;
