@@ -12,7 +12,7 @@ use handeye::app::{Command, NoticeKind, RecoverySettings, Workbench};
 use handeye::calibrate::{Method, Solution};
 use handeye::device::sim::{Fault, FaultSpec, SimCell, SimOptions};
 use handeye::device::{LinkState, MotionRefusal, RobotKind, RoutineEnd, SearchPhase, SensorKind, WorkspaceBox};
-use handeye::session::{Edit, Row, Session, Target};
+use handeye::session::{Edit, Row, Session, SetupField, Target};
 
 /// Long past anything that is waited for here, on a slow machine as well.
 const PATIENCE: Duration = Duration::from_mins(2);
@@ -558,4 +558,44 @@ fn a_recorded_session_plays_through_the_panel_and_changes_nothing() {
     bench.cell(CellCommand::EndReplay);
     let cell = bench.workbench.cell();
     assert!(cell.replay.is_none() && cell.live.is_none() && cell.robot.latest.is_none());
+}
+
+#[test]
+fn a_search_along_the_laser_line_is_refused_before_anything_moves() {
+    let mut bench = Bench::practising(22, FAST).armed();
+    bench.change_settings(|settings| settings.search.direction = [1.0, 0.0, 0.0]);
+    for command in [CellCommand::FindLargestArc, CellCommand::StartRun { num_stations: 3 }] {
+        bench.cell(command);
+        assert!(bench.last_notice().contains("across the laser line"), "{}", bench.last_notice());
+        assert!(bench.workbench.cell().run.is_none() && !bench.workbench.cell().is_busy());
+    }
+    bench.change_settings(|settings| settings.search.direction = [0.6, 1.0, 0.0]);
+    bench.cell(CellCommand::FindLargestArc);
+    assert!(bench.workbench.cell().is_busy());
+    assert!(bench.last_notice().contains("off the laser plane's normal"), "{}", bench.last_notice());
+    bench.cell(CellCommand::Stop);
+    bench.wait_for_rest();
+}
+
+#[test]
+fn captures_record_what_is_connected_and_another_robot_is_remarked_once() {
+    let options = SimOptions { seed: 23, time_scale: FAST, ..SimOptions::default() };
+    let sim = SimCell::start(&options).expect("ports are free");
+    let mut bench = Bench::connected_to(&sim);
+    bench.cell(CellCommand::CaptureStation);
+    bench.wait_for_rest();
+    assert_eq!(
+        (bench.session().robot.model.as_str(), bench.session().sensor.model.as_str()),
+        ("FANUC", "Keyence LJ-V7000")
+    );
+    assert_eq!(bench.num_undo_steps(), 1);
+    let other = SetupField::RobotModel("UR5e".to_owned());
+    bench.workbench.apply(Command::Edit { edit: Edit::Setup(other), gesture: None });
+    for _ in 0..2 {
+        bench.cell(CellCommand::CaptureStation);
+        bench.wait_for_rest();
+    }
+    let remarks = bench.workbench.notices().iter().filter(|notice| notice.message.contains("Universal Robots"));
+    assert_eq!(remarks.count(), 1, "{:?}", bench.workbench.notices());
+    assert_eq!(bench.session().robot.model, "UR5e");
 }

@@ -1,6 +1,6 @@
 //! What the live cell has to say: notices, and the reasons for a proposed pose.
 
-use crate::device::{MotionRefusal, RoutineEnd};
+use crate::device::{MotionRefusal, RobotKind, RoutineEnd, SensorKind};
 use crate::plan::PlannedStation;
 
 use super::plural;
@@ -53,6 +53,39 @@ pub const NO_PROPOSAL: &str = "there is no proposed pose: ask for one first";
 pub const PRACTICE_NAME: &str = "practice";
 /// The simulated robot.
 pub const PRACTICE_ROBOT: &str = "simulated FANUC LR Mate 200iD";
+
+/// The make of the robots that a driver connects to; `None` where it is any.
+#[must_use]
+pub const fn make_of_robot(kind: RobotKind) -> Option<&'static str> {
+    match kind {
+        RobotKind::FanucMappdk | RobotKind::FanucPage => Some("FANUC"),
+        RobotKind::UniversalRobots => Some("Universal Robots"),
+        RobotKind::Bridge => None,
+    }
+}
+
+/// The profilers that a driver connects to; `None` where they are any.
+#[must_use]
+pub const fn model_of_sensor(kind: SensorKind) -> Option<&'static str> {
+    match kind {
+        SensorKind::KeyenceLjv => Some("Keyence LJ-V7000"),
+        SensorKind::Bridge | SensorKind::Folder => None,
+    }
+}
+
+/// A session holds stations of another robot.
+#[must_use]
+pub fn other_robot(recorded: &str, connected: &str) -> String {
+    format!(
+        "the session's robot is {recorded}, the one that is connected {connected}: their stations make no calibration together. Begin a new session, or correct the robot's name in the session"
+    )
+}
+
+/// A search that is longer than it has to be.
+#[must_use]
+pub fn travel_is_oblique(angle_deg: f64) -> String {
+    format!("The search goes {angle_deg:.0}° off the laser plane's normal: straight across the line it is shorter")
+}
 
 /// The simulated profiler.
 #[must_use]

@@ -4,15 +4,16 @@ use std::collections::HashSet;
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::app::cell::{Activity, StationRoutine};
+use crate::app::cell::{Activity, CellView, StationRoutine};
 use crate::calibrate::SideChoice;
 use crate::device::{
-    DeviceError, LinkState, Measurement, Routine, RoutineEnd, RoutineEvent, SearchEnd, SearchReport, StepCapture, Task,
+    DeviceError, LinkState, Measurement, RobotKind, Routine, RoutineEnd, RoutineEvent, SearchEnd, SearchReport,
+    StepCapture, Task,
 };
 use crate::geometry::{Base, Flange, Profile, Transform};
 use crate::session::edit::{CellValue, free_label};
 use crate::session::model::UnknownFields;
-use crate::session::{Capture, Edit, Place, Reading, Session, Station, new_gesture};
+use crate::session::{Capture, Edit, Place, Reading, Session, SetupField, Station, new_gesture};
 use crate::text::cell as words;
 use crate::text::edits::capture_label;
 
@@ -87,6 +88,16 @@ impl Workbench {
             self.notify_of_cell(NoticeKind::Error, words::BUSY.to_owned());
         } else if let Err(reason) = self.measure_station(None, routine) {
             self.notify_of_cell(NoticeKind::Error, reason);
+        } else if routine == StationRoutine::LargestArc {
+            self.remark_oblique_travel();
+        }
+    }
+
+    /// A search from here that is longer than it has to be.
+    pub(super) fn remark_oblique_travel(&mut self) {
+        let Some(at) = self.cell.view.robot.latest.as_ref().map(|report| report.base_from_flange) else { return };
+        if let Ok(Some(angle_deg)) = self.check_travel(&at, &self.cell.view.settings.search) {
+            self.notify_of_cell(NoticeKind::Done, words::travel_is_oblique(angle_deg));
         }
     }
 
@@ -107,6 +118,12 @@ impl Workbench {
         need_ready(robot.client().link_state(now), words::NO_ROBOT)?;
         need_ready(sensor.client().link_state(now), words::NO_SENSOR)?;
         let settings = &self.cell.view.settings;
+        let latest = self.cell.view.robot.latest.as_ref();
+        if let (StationRoutine::LargestArc, Some(at)) =
+            (routine, go_to.or(latest.map(|report| report.base_from_flange)))
+        {
+            self.check_travel(&at, &settings.search).map_err(|refusal| refusal.to_string())?;
+        }
         let task = Task {
             go_to,
             measurement: Some(match routine {
@@ -201,7 +218,10 @@ impl Workbench {
                 captures: vec![capture],
                 unknown: UnknownFields::new(),
             };
-            Edit::InsertStations { at: document.session.stations.len(), stations: vec![station] }
+            let insert = Edit::InsertStations { at: document.session.stations.len(), stations: vec![station] };
+            let mut edits = self.cell.view.what_is_connected(&document.session);
+            edits.push(insert);
+            Edit::Several(edits)
         } else {
             // A station that is gone was taken back: that is told elsewhere.
             let Some(station_idx) = measuring.station_idx(&document.session) else { return };
@@ -213,6 +233,22 @@ impl Workbench {
         {
             measuring.first_pose.get_or_insert(captured.base_from_flange);
             measuring.profiles.push(profile);
+        }
+        self.remark_other_robot();
+    }
+
+    /// Stations of two robots make no calibration: that is said once a session.
+    fn remark_other_robot(&mut self) {
+        let (Some(document), Some(setup)) = (&self.document, &self.cell.view.robot.setup) else { return };
+        let (recorded, connected) = (make_of(&document.session.robot.model), words::make_of_robot(setup.kind));
+        if self.cell.practice.is_some() || self.cell.remarked_robot_of == Some(document.id) {
+            return;
+        }
+        if let (Some(recorded), Some(connected)) = (recorded, connected)
+            && recorded != connected
+        {
+            self.cell.remarked_robot_of = Some(document.id);
+            self.notify_of_cell(NoticeKind::Error, words::other_robot(recorded, connected));
         }
     }
 
@@ -284,6 +320,33 @@ impl Workbench {
         let label = capture_label(&words::station(&measuring.label));
         self.edit_as(&edit, Some(measuring.gesture), label);
     }
+}
+
+impl CellView {
+    /// What a session does not say yet of the devices, as edits.
+    fn what_is_connected(&self, session: &Session) -> Vec<Edit> {
+        let is_open = |model: &str| model.trim().is_empty();
+        let robot = self.robot.setup.as_ref().filter(|_| is_open(&session.robot.model));
+        let robot = robot.and_then(|setup| words::make_of_robot(setup.kind));
+        let sensor = self.sensor.setup.as_ref().filter(|_| is_open(&session.sensor.model));
+        let sensor = sensor.and_then(|setup| words::model_of_sensor(setup.kind));
+        let robot = robot.map(|make| SetupField::RobotModel(make.to_owned()));
+        let sensor = sensor.map(|model| SetupField::SensorModel(model.to_owned()));
+        robot.into_iter().chain(sensor).map(Edit::Setup).collect()
+    }
+}
+
+/// The make that the name of a robot tells, among those that can be connected.
+fn make_of(model: &str) -> Option<&'static str> {
+    let model = model.to_lowercase();
+    let is_ur =
+        model.strip_prefix("ur").is_some_and(|rest| rest.trim_start().starts_with(|c: char| c.is_ascii_digit()));
+    let kind = match () {
+        () if model.contains("fanuc") => RobotKind::FanucMappdk,
+        () if model.contains("universal robots") || is_ur => RobotKind::UniversalRobots,
+        () => return None,
+    };
+    words::make_of_robot(kind)
 }
 
 /// Whether nobody knows that the robot stands.

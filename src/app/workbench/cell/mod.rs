@@ -7,6 +7,7 @@ mod practice;
 mod proposals;
 mod replay;
 mod run;
+mod travel;
 
 use std::time::Instant;
 
@@ -39,6 +40,8 @@ pub(super) struct LiveCell {
     notice_ids: Vec<u64>,
     /// The line of the last stop that was wanted.
     stop_notice_id: Option<u64>,
+    /// The document of which it was said that its robot is another one.
+    remarked_robot_of: Option<u64>,
 }
 
 impl Workbench {

@@ -149,6 +149,9 @@ impl Workbench {
     }
 
     fn proposal_of(&self, station: PlannedStation, reason: String) -> Proposal {
+        let search = self.search_at_stations();
+        let oblique = search.and_then(|search| self.check_travel(&station.base_from_flange, &search).ok().flatten());
+        let reason = oblique.map_or(reason.clone(), |deg| format!("{reason}. {}", words::travel_is_oblique(deg)));
         let mut proposal = Proposal { station, reason, distance_mm: 0.0, turn_deg: 0.0, refusal: None };
         self.check_against_robot(&mut proposal);
         proposal
@@ -161,7 +164,11 @@ impl Workbench {
         proposal.turn_deg = from.rotation().angle_to(&to.rotation()).to_degrees();
         proposal.refusal = match self.arming() {
             None => Some(MotionRefusal::NotArmed),
-            Some(arming) => check_station(&arming, report, to, self.search_at_stations().as_ref()).err(),
+            Some(arming) => {
+                let search = self.search_at_stations();
+                let across = search.as_ref().map_or(Ok(None), |search| self.check_travel(to, search));
+                across.and_then(|_| check_station(&arming, report, to, search.as_ref())).err()
+            }
         };
     }
 
@@ -304,7 +311,7 @@ struct Seen<'a> {
     peak: Option<&'a FoundPeak>,
 }
 
-fn rigid(mounting: &RoughMounting) -> Rigid {
+pub(super) fn rigid(mounting: &RoughMounting) -> Rigid {
     let [w, i, j, k] = mounting.quaternion_wxyz;
     let rotation = nalgebra::UnitQuaternion::new_normalize(nalgebra::Quaternion::new(w, i, j, k));
     Rigid::from_parts(Vec3::from(mounting.translation_mm).into(), rotation)

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use crate::app::cell::{Activity, RunView};
+use crate::app::cell::{Activity, RunView, StationRoutine};
 use crate::calibrate::best_available;
 use crate::device::{DeviceError, MotionRefusal, RoutineEnd, SearchEnd};
 use crate::geometry::{Base, Flange, Transform};
@@ -107,6 +107,9 @@ impl Workbench {
                 return;
             }
             run.stage = Stage::Measuring;
+            if self.cell.view.settings.routine == StationRoutine::LargestArc {
+                self.remark_oblique_travel();
+            }
         }
         self.cell.run = Some(run);
         self.show_run();
