@@ -6,12 +6,13 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::{Duration, Instant};
 
-use handeye::app::cell::{Activity, CellCommand, CellSettings, StationRoutine};
+use handeye::app::cell::{Activity, CellCommand, CellSettings, RoughMounting, StationRoutine};
 use handeye::app::compare::distance_from_truth;
 use handeye::app::{Command, NoticeKind, RecoverySettings, Workbench};
 use handeye::calibrate::{Method, Solution};
-use handeye::device::sim::{Fault, FaultSpec, SimCell, SimOptions};
+use handeye::device::sim::{Fault, FaultSpec, Head, SimCell, SimOptions};
 use handeye::device::{LinkState, MotionRefusal, RobotKind, RoutineEnd, SearchPhase, SensorKind, WorkspaceBox};
+use handeye::geometry::Vec3;
 use handeye::session::{Edit, Row, Session, SetupField, Target};
 
 /// Long past anything that is waited for here, on a slow machine as well.
@@ -67,7 +68,13 @@ impl Bench {
             let cell = workbench.cell();
             cell.robot.state == LinkState::Ready && cell.robot.latest.is_some() && cell.live.is_some()
         });
-        bench.change_settings(|settings| settings.settle.settle_ms = 5);
+        let mounted = sim.truth.rough_flange_from_sensor;
+        let q = mounted.rotation;
+        bench.change_settings(|settings| {
+            settings.settle.settle_ms = 5;
+            let translation_mm = mounted.translation.vector.into();
+            settings.mounting = Some(RoughMounting { translation_mm, quaternion_wxyz: [q.w, q.i, q.j, q.k] });
+        });
         bench
     }
 
@@ -143,6 +150,11 @@ impl Bench {
         // The stated noise is about 0.02 mm; a robot under way makes 50 mm/s and more.
         assert!(moved_mm < 0.5, "{moved_mm} mm");
     }
+}
+
+/// Where the robot says that it is, mm.
+fn position_mm(workbench: &Workbench) -> Vec3 {
+    workbench.cell().robot.latest.as_ref().expect("reports").base_from_flange.translation_mm()
 }
 
 fn recoverable_in(folder: &Path) -> Bench {
@@ -231,18 +243,25 @@ fn a_stop_a_disarming_a_disconnection_and_a_closed_document_each_stop_the_robot(
         ("close", |bench| bench.workbench.apply(Command::CloseDocument)),
         ("another session", |bench| bench.workbench.apply(Command::NewSession(Target::ball(10.0)))),
     ];
-    // Practice ends with its document; a cell of its own goes on.
-    let options = SimOptions { seed: 2, time_scale: SLOW, ..SimOptions::default() };
     for (what, way) in ways {
+        // A head that sees a large ball from far away: another view of it is a long way off.
+        let head = Head::by_id("lj-v7300").expect("there is one");
+        let robot = RobotKind::UniversalRobots;
+        let options = SimOptions { seed: 2, time_scale: SLOW, robot, head, radius_mm: 30.0, ..SimOptions::default() };
+        // Practice ends with its document; a cell of its own goes on.
         let sim = SimCell::start(&options).expect("ports are free");
         let mut bench = Bench::connected_to(&sim).armed();
-        // A slow search: its moves take their time.
-        bench.change_settings(|settings| settings.limits.search_speed_mm_s = 1.0);
-        bench.cell(CellCommand::FindLargestArc);
-        bench.wait("a capture and then a move", |workbench| {
-            workbench.cell().search.is_some() && workbench.cell().activity == Activity::Moving
-        });
+        bench.cell(CellCommand::CaptureStation);
+        bench.wait_for_rest();
         let num_captures = bench.session().num_captures();
+        bench.change_settings(|settings| settings.limits.transit_speed_mm_s = 5.0);
+        bench.cell(CellCommand::ProposeStation);
+        bench.wait("a proposal", |workbench| workbench.cell().proposal.is_some());
+        let proposal = bench.workbench.cell().proposal.clone().expect("proposed");
+        assert!(proposal.distance_mm > 100.0, "{proposal:?}");
+        let from_mm = position_mm(&bench.workbench);
+        bench.cell(CellCommand::AcceptProposal);
+        bench.wait("the robot to set out", |workbench| (position_mm(workbench) - from_mm).norm() > 3.0);
         way(&mut bench);
         bench.wait_for_rest();
         let end = bench.workbench.cell().last_end.clone();
@@ -254,6 +273,9 @@ fn a_stop_a_disarming_a_disconnection_and_a_closed_document_each_stop_the_robot(
         }
         assert_eq!(bench.num_errors(), 0, "{what}: {:?}", bench.workbench.notices());
         bench.check_robot_stands();
+        // What is left would take some seconds.
+        let left_mm = (position_mm(&bench.workbench) - proposal.station.base_from_flange.translation_mm()).norm();
+        assert!(left_mm > 40.0, "{what}: {left_mm} mm before the target");
         match what {
             "close" => assert!(bench.workbench.document().is_none()),
             "another session" => assert_eq!(bench.session().num_captures(), 0),

@@ -134,6 +134,7 @@ fn options(args: &CellArgs) -> SimOptions {
         radius_mm: args.radius_mm,
         is_noisy: !args.noise_free,
         faults: args.fault.clone(),
+        ..SimOptions::default()
     }
 }
 

@@ -213,4 +213,19 @@ mod tests {
             );
         }
     }
+
+    #[test]
+    fn what_the_device_refuses_is_told_and_breaks_nothing() {
+        let now = Instant::now();
+        let refused = DeviceError::CannotMove { device: "Robot" };
+        let mut link = Link::default();
+        link.on_looked(Some(refused.clone()));
+        assert_eq!(link.state(now), LinkState::Connecting, "there is nothing to look at");
+        link.on_connected(now);
+        link.on_looked(Some(refused.clone()));
+        assert_eq!(link.state(now), LinkState::Failed { error: refused, retry_in: Some(Duration::ZERO) });
+        assert!(link.is_made() && link.retry_at().is_none());
+        link.on_looked(None);
+        assert_eq!(link.state(now), LinkState::Ready);
+    }
 }

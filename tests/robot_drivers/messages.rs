@@ -106,6 +106,8 @@ fn scripts_are_read_as_written_and_as_others_write_them() {
     assert_eq!(Program::parse(text), Ok(step));
     for (line, expected) in [
         ("stopl(2.5)", Statement::StopL { deceleration_m_s2: 2.5 }),
+        ("set_tcp(p[0.1,-0.2,0.3,0,2.5,0])", Statement::SetTcp { offset: pose }),
+        ("sync()", Statement::Sync),
         ("stopj( 4 )", Statement::StopJ { deceleration_rad_s2: 4.0 }),
         (
             "movel(p[0.1,-0.2,0.3,0,2.5,0],0.5,0.1)",

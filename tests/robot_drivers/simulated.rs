@@ -1,9 +1,11 @@
 //! Every driver against the simulated cell, whose arm has joints, limits and a speed.
 
+use std::time::Instant;
+
 use handeye::device::robot::connect;
 use handeye::device::sim::{SimCell, SimOptions};
-use handeye::device::{DeviceError, MoveState, Readiness, RobotDriver, RobotKind};
-use handeye::geometry::{Base, Flange, Transform, Vec3, so3};
+use handeye::device::{DeviceError, LinearMove, MoveState, Readiness, RobotDriver, RobotKind};
+use handeye::geometry::{Base, Flange, Rigid, Transform, Vec3, so3};
 
 use super::fake::{assert_near, finish, linear, soon};
 
@@ -61,6 +63,43 @@ fn robots_that_move_can_be_stopped_on_the_way() {
         robot.start_move(&linear(stopped, 50.0), soon()).expect("taken again");
         finish(&mut *robot).unwrap_or_else(|error| panic!("{kind:?}: {error}"));
     }
+}
+
+#[test]
+fn the_flange_goes_straight_and_no_faster_than_asked_whatever_tool_point_is_active() {
+    const TIME_SCALE: f64 = 10.0;
+    const SPEED_MM_S: f64 = 50.0;
+    let flange_from_tcp = Rigid::translation(0.0, 0.0, 300.0);
+    let options = SimOptions {
+        robot: RobotKind::UniversalRobots,
+        time_scale: TIME_SCALE,
+        flange_from_tcp,
+        ..SimOptions::default()
+    };
+    let cell = SimCell::start(&options).expect("free ports");
+    let mut robot = connect(&cell.robot_setup, soon()).expect("a robot");
+    let start = at(&mut *robot);
+    // 30° about the tool point: that stays where it is, and the flange goes 155 mm.
+    let turn = Rigid::from_parts(Vec3::zeros().into(), so3::exp(Vec3::new(30.0_f64.to_radians(), 0.0, 0.0)));
+    let target = Transform::from_rigid(start.rigid() * flange_from_tcp * turn * flange_from_tcp.inverse());
+    let way = target.translation_mm() - start.translation_mm();
+    assert!((way.norm() - 155.3).abs() < 0.1, "{way}");
+    let begin = Instant::now();
+    let motion = LinearMove { base_from_flange: target, speed_mm_s: SPEED_MM_S, rotation_speed_deg_s: 30.0 };
+    robot.start_move(&motion, soon()).expect("taken");
+    let mut num_underway = 0;
+    while robot.move_state(soon()).expect("on its way") == MoveState::Moving {
+        let gone = at(&mut *robot).translation_mm() - start.translation_mm();
+        let off_mm = (gone - way * (gone.dot(&way) / way.norm_squared())).norm();
+        assert!(off_mm < NEAR_MM, "{off_mm} mm beside the straight line");
+        num_underway +=
+            u32::from(gone.norm() > 1.0 && (target.translation_mm() - start.translation_mm() - gone).norm() > 1.0);
+    }
+    let taken_s = begin.elapsed().as_secs_f64() * TIME_SCALE;
+    // A slow machine takes longer, never less.
+    assert!(taken_s > way.norm() / SPEED_MM_S, "{taken_s} s");
+    assert!(num_underway > 0, "nobody has looked");
+    assert_near(&at(&mut *robot), &target, NEAR_MM);
 }
 
 #[test]

@@ -23,11 +23,15 @@ const OFFSET: UrPose = UrPose([0.01, -0.02, 0.1, 0.0, 0.3, 0.0]);
 /// What a controller holds.
 #[derive(Clone, Debug)]
 struct State {
-    base_from_tcp: Transform<Base, Tcp>,
+    base_from_flange: Transform<Base, Flange>,
+    /// The active tool point.
+    offset: UrPose,
     knows_offset: bool,
     /// What the dashboard answers; `None`: it does not know the question.
     is_remote: Option<bool>,
     ignores_programs: bool,
+    /// The interface for scripts closes the connection once it has a move.
+    hangs_up_after_move: bool,
     /// Nothing but texts are streamed, as many as the connection takes.
     is_flooding: bool,
     is_dashboard_silent: bool,
@@ -38,17 +42,34 @@ struct State {
     heard: Vec<Program>,
 }
 
+impl State {
+    fn flange_from_tcp(&self) -> Transform<Flange, Tcp> {
+        Transform::from_rigid(*self.offset.pose().rigid())
+    }
+
+    fn perform(&mut self, statement: Statement) {
+        match statement {
+            Statement::MoveL { pose, .. } => self.base_from_flange = pose.pose() * self.flange_from_tcp().inverse(),
+            Statement::SetTcp { offset } => self.offset = offset,
+            Statement::WriteOutputInteger { register: 24, value } => self.mark = value,
+            Statement::StopL { .. } | Statement::Sync => {}
+            other => panic!("{other:?}"),
+        }
+    }
+}
+
 #[derive(Clone, Debug)]
 struct Fake(Arc<Mutex<State>>);
 
 impl Fake {
     fn new(base_from_flange: Transform<Base, Flange>) -> Self {
-        let flange_from_tcp = Transform::<Flange, Tcp>::from_rigid(*OFFSET.pose().rigid());
         Self(Arc::new(Mutex::new(State {
-            base_from_tcp: base_from_flange * flange_from_tcp,
+            base_from_flange,
+            offset: OFFSET,
             knows_offset: true,
             is_remote: Some(true),
             ignores_programs: false,
+            hangs_up_after_move: false,
             is_flooding: false,
             is_dashboard_silent: false,
             robot_mode: 7,
@@ -97,12 +118,18 @@ impl Fake {
         if state.ignores_programs {
             return Act::Silence;
         }
-        match program.statements.as_slice() {
-            [Statement::MoveL { .. }, ..] => state.program = Some(program),
-            [Statement::StopL { .. }, Statement::WriteOutputInteger { register: 24, value }] => {
-                (state.program, state.mark) = (None, *value);
+        state.program = None;
+        let mut statements = program.statements.into_iter();
+        for statement in statements.by_ref() {
+            if let Statement::MoveL { .. } = statement {
+                let rest = [statement].into_iter().chain(statements).collect();
+                state.program = Some(Program { name: program.name, statements: rest });
+                break;
             }
-            other => panic!("{other:?}"),
+            state.perform(statement);
+        }
+        if state.hangs_up_after_move && state.program.is_some() {
+            return Act::SendAndClose(Vec::new());
         }
         Act::Silence
     }
@@ -111,15 +138,8 @@ impl Fake {
     fn end_program(&self, does_arrive: bool) {
         wait_until(|| self.state().program.is_some());
         let mut state = self.state();
-        let program = state.program.take();
-        let Some([Statement::MoveL { pose, .. }, Statement::WriteOutputInteger { register: 24, value }]) =
-            program.as_ref().map(|program| &program.statements[..])
-        else {
-            panic!("{program:?}");
-        };
-        if does_arrive {
-            (state.base_from_tcp, state.mark) = (pose.pose(), *value);
-        }
+        let program = state.program.take().expect("a program");
+        program.statements.into_iter().filter(|_| does_arrive).for_each(|statement| state.perform(statement));
     }
 
     fn serve_rtde(&self, mut stream: TcpStream) {
@@ -179,7 +199,9 @@ impl Fake {
         // In a safeguard stop a program waits.
         let is_moving = has_program && state.safety_mode != 5;
         match name {
-            "actual_TCP_pose" => Some(Value::Vector6(UrPose::from_pose(&state.base_from_tcp).0)),
+            "actual_TCP_pose" => {
+                Some(Value::Vector6(UrPose::from_pose(&(state.base_from_flange * state.flange_from_tcp())).0))
+            }
             "actual_TCP_speed" => Some(Value::Vector6([0.0, if is_moving { 0.01 } else { 0.0 }, 0.0, 0.0, 0.0, 0.0])),
             "robot_mode" => Some(Value::I32(state.robot_mode)),
             "safety_mode" => Some(Value::I32(state.safety_mode)),
@@ -189,7 +211,7 @@ impl Fake {
                 (true, false) => 4,
             })),
             "output_int_register_24" => Some(Value::I32(state.mark)),
-            "tcp_offset" if state.knows_offset => Some(Value::Vector6(OFFSET.0)),
+            "tcp_offset" if state.knows_offset => Some(Value::Vector6(state.offset.0)),
             _ => None,
         }
     }
@@ -241,6 +263,59 @@ fn the_flange_is_told_and_moved_whatever_tool_point_is_active() {
         fake.end_program(true);
         finish(&mut *robot).expect("it arrives");
         assert_near(&robot.report(soon()).expect("a state").base_from_flange, &target, 1e-5);
+        assert_offset(&fake, OFFSET);
+        // Where the tool point is known it is the flange that goes straight, and the tool point is given back.
+        let moves = fake.state().heard.clone();
+        let is_set = matches!(moves[0].statements[0], Statement::SetTcp { offset: UrPose::AT_FLANGE });
+        assert_eq!((is_set, moves[0].statements.len()), (knows_offset, if knows_offset { 5 } else { 2 }));
+    }
+}
+
+#[track_caller]
+fn assert_offset(fake: &Fake, expected: UrPose) {
+    let UrPose(found) = fake.state().offset;
+    // Nine decimals, in m and radians.
+    assert!(found.iter().zip(expected.0).all(|(found, expected)| (found - expected).abs() < 1e-8), "{found:?}");
+}
+
+#[test]
+fn a_move_that_does_not_end_well_gives_the_tool_point_back_too() {
+    let fake = Fake::new(start_pose());
+    let mut robot = robot_at(fake.start());
+    robot.start_move(&linear(shifted(50.0), 10.0), soon()).expect("taken");
+    wait_until(|| fake.state().program.is_some());
+    assert_offset(&fake, UrPose::AT_FLANGE);
+    robot.stop(soon()).expect("it stops");
+    assert_offset(&fake, OFFSET);
+    // Ended by the controller, which runs nothing of it any more: by what is sent next.
+    robot.start_move(&linear(shifted(50.0), 10.0), soon()).expect("taken");
+    wait_until(|| robot.report(soon()).expect("a state").is_moving == Some(true));
+    assert_eq!(robot.move_state(soon()), Ok(MoveState::Moving));
+    fake.end_program(false);
+    finish(&mut *robot).expect_err("it did not arrive");
+    assert_offset(&fake, UrPose::AT_FLANGE);
+    robot.start_move(&linear(shifted(1.0), 10.0), soon()).expect("taken");
+    fake.end_program(true);
+    finish(&mut *robot).expect("it arrives");
+    assert_offset(&fake, OFFSET);
+}
+
+#[test]
+fn a_stop_finds_another_way_where_the_connection_of_the_move_was_closed() {
+    for drops in [false, true] {
+        let fake = Fake::new(start_pose());
+        fake.state().hangs_up_after_move = true;
+        let mut robot = robot_at(fake.start());
+        robot.start_move(&linear(shifted(50.0), 10.0), soon()).expect("taken");
+        wait_until(|| fake.state().program.is_some());
+        // The end of the connection is on its way behind the program.
+        thread::sleep(Duration::from_millis(50));
+        if drops {
+            drop(robot);
+        } else {
+            robot.stop(soon()).expect("it stops");
+        }
+        wait_until(|| fake.state().program.is_none());
     }
 }
 
@@ -256,7 +331,7 @@ fn a_straight_move_has_a_speed_and_a_turn_has_a_time() {
     }
     let heard = fake.state().heard.clone();
     let [Program { statements, name }, _, turn] = &heard[..] else { panic!("{heard:?}") };
-    let [Statement::MoveL { speed_m_s, time_s, .. }, Statement::WriteOutputInteger { register, value }] =
+    let [_, Statement::MoveL { speed_m_s, time_s, .. }, .., Statement::WriteOutputInteger { register, value }] =
         statements[..]
     else {
         panic!("{statements:?}");
@@ -264,7 +339,7 @@ fn a_straight_move_has_a_speed_and_a_turn_has_a_time() {
     assert_eq!((name.as_str(), register, value), ("handeye_move", 24, 42));
     assert!((speed_m_s - 0.01).abs() < 1e-12 && time_s == 0.0, "{speed_m_s} m/s in {time_s} s");
     // 30° at 30 degrees a second, and twice that for the ramps.
-    let Statement::MoveL { time_s, .. } = turn.statements[0] else { panic!("{turn:?}") };
+    let Statement::MoveL { time_s, .. } = turn.statements[1] else { panic!("{turn:?}") };
     assert!((time_s - 2.0).abs() < 1e-5, "{time_s} s");
 }
 

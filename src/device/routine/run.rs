@@ -165,7 +165,8 @@ impl Runner {
         self.tell(RoutineEvent::Moving { base_from_flange: *target });
         let patience = 3 * duration_of(&motion, &base_from_flange) + self.robot.deadlines().beyond_move;
         self.has_moved.set(true);
-        Ok(self.robot.move_to(motion, patience)?)
+        // There is no sense in a long way to where nothing can be measured.
+        Ok(self.robot.move_while(motion, patience, || self.sensor.check_connection())?)
     }
 
     /// A robot that was sent nowhere from here may be at somebody else's program, which is not ours to end.

@@ -87,7 +87,7 @@ mod tests {
             let origin = layout.ball_in_base - rotation * (Vec3::new(0.0, offset, 0.6) * radius_mm);
             let base_from_sensor = Rigid::from_parts(Translation3::from(origin), rotation);
             let target = base_from_sensor * layout.flange_from_sensor.inverse();
-            joints = Way::straight(&layout.chain, &joints, &target)?.end();
+            joints = Way::straight(&layout.chain, &joints, &target, &Rigid::identity())?.end();
         }
         Ok(())
     }

@@ -44,6 +44,8 @@ pub struct SimOptions {
     pub head: Head,
     /// Radius of the ball, mm.
     pub radius_mm: f64,
+    /// The tool point that the operator has made active; only Universal Robots go by it.
+    pub flange_from_tcp: Rigid,
     /// Whether poses and profiles have noise, and profiles lost points.
     pub is_noisy: bool,
     /// What goes wrong.
@@ -60,6 +62,7 @@ impl Default for SimOptions {
             time_scale: 1.0,
             head: Head::default(),
             radius_mm: 15.0,
+            flange_from_tcp: Rigid::identity(),
             is_noisy: true,
             faults: Vec::new(),
         }
@@ -75,6 +78,8 @@ pub struct SimTruth {
     pub ball_in_base: Vec3,
     /// Its radius, mm.
     pub radius_mm: f64,
+    /// How far [`Fault::BallMoved`] pushes it, mm.
+    pub push_mm: Vec3,
     /// The mounting as a drawing would have it: off by some degrees and millimetres.
     pub rough_flange_from_sensor: Rigid,
     /// Noise of the robot's pose: mm, degrees.
@@ -135,6 +140,12 @@ impl SimCell {
             ports: served,
             servers,
         })
+    }
+
+    /// Where the arm holds the flange now, whatever the controller tells: `base_from_flange`.
+    #[must_use]
+    pub fn base_from_flange(&self) -> Rigid {
+        self.servers.world().arm().base_from_flange
     }
 
     /// One more fault, its counts from now on.

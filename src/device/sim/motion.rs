@@ -20,9 +20,9 @@ const JOINT_SPEED_RAD_S: f64 = 3.5;
 /// How fast a straight motion may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Speed {
-    /// Of the flange's position, mm/s.
+    /// Of the tool point's position, mm/s.
     pub linear_mm_s: f64,
-    /// Of its orientation, rad/s.
+    /// Of the orientation, rad/s.
     pub turning_rad_s: f64,
 }
 
@@ -31,22 +31,42 @@ impl Speed {
     pub const FULL: Self = Self { linear_mm_s: 2000.0, turning_rad_s: JOINT_SPEED_RAD_S };
 }
 
+/// What goes straight: a point of the flange, its orientation turning evenly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Line {
+    /// Of the point.
+    ends: [Rigid; 2],
+    flange_from_tcp: Rigid,
+}
+
+impl Line {
+    fn base_from_flange(&self, part: f64) -> Rigid {
+        between(&self.ends, part) * self.flange_from_tcp.inverse()
+    }
+}
+
 /// A way that the arm can go.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Way {
-    /// Where it is straight, its ends; otherwise the joints are what moves evenly.
-    straight: Option<[Rigid; 2]>,
+    /// Where it is straight, what is; otherwise the joints are what moves evenly.
+    straight: Option<Line>,
     /// The joints at even parts of it; at least the two ends.
     samples: Vec<Joints>,
 }
 
 impl Way {
-    /// Straight to a pose, the orientation turning evenly.
+    /// To a pose of the flange, a tool point going straight and the orientation turning evenly.
     ///
     /// # Errors
     /// [`Unreachable`] if some pose on the way is.
-    pub fn straight(chain: &Chain, start: &Joints, base_from_flange: &Rigid) -> Result<Self, Unreachable> {
-        let ends = [chain.base_from_flange(start), *base_from_flange];
+    pub fn straight(
+        chain: &Chain,
+        start: &Joints,
+        base_from_flange: &Rigid,
+        flange_from_tcp: &Rigid,
+    ) -> Result<Self, Unreachable> {
+        let ends = [chain.base_from_flange(start), *base_from_flange].map(|flange| flange * flange_from_tcp);
+        let line = Line { ends, flange_from_tcp: *flange_from_tcp };
         let [length_mm, turn_rad] = length_and_turn(&ends);
         let num_parts = (length_mm / CHECK_MM).max(turn_rad.to_degrees() / CHECK_DEG).ceil().clamp(1.0, 1e5);
         let mut samples = vec![*start];
@@ -54,7 +74,7 @@ impl Way {
         let mut idx = 0.0;
         while idx < num_parts {
             idx += 1.0;
-            let next = chain.joints_near(&last, &between(&ends, idx / num_parts))?;
+            let next = chain.joints_near(&last, &line.base_from_flange(idx / num_parts))?;
             chain.check_limits(&next)?;
             if let Some(leaping) = (next - last).iter().position(|turn| turn.abs() > LEAP_RAD) {
                 return Err(Unreachable::Singular { joint: leaping + 1 });
@@ -62,7 +82,7 @@ impl Way {
             samples.push(next);
             last = next;
         }
-        Ok(Self { straight: Some(ends), samples })
+        Ok(Self { straight: Some(line), samples })
     }
 
     /// All joints evenly to their ends.
@@ -78,8 +98,8 @@ impl Way {
     #[must_use]
     pub fn cruise_s(&self, speed: Speed, joint_speed_part: f64) -> f64 {
         match &self.straight {
-            Some(ends) => {
-                let [length_mm, turn_rad] = length_and_turn(ends);
+            Some(line) => {
+                let [length_mm, turn_rad] = length_and_turn(&line.ends);
                 (length_mm / speed.linear_mm_s).max(turn_rad / speed.turning_rad_s)
             }
             None => (self.end() - self.samples[0]).amax() / (JOINT_SPEED_RAD_S * joint_speed_part),
@@ -109,7 +129,7 @@ impl Way {
 
     fn pose_at(&self, chain: &Chain, part: f64) -> Rigid {
         match &self.straight {
-            Some(ends) => between(ends, part),
+            Some(line) => line.base_from_flange(part),
             None => chain.base_from_flange(&self.joints_at(part)),
         }
     }
@@ -228,7 +248,7 @@ mod tests {
         let from = chain.base_from_flange(&joints);
         let turn = Rigid::from_parts(Translation3::new(40.0, -30.0, 25.0), so3::exp(Vec3::new(0.3, -0.2, 0.4)));
         let to = from * turn;
-        let motion = Motion::new(Way::straight(&chain, &joints, &to).expect("reachable"), 2.0, 1.5);
+        let motion = Motion::new(Way::straight(&chain, &joints, &to, &Rigid::identity()).expect("reachable"), 2.0, 1.5);
         assert!((motion.end_s() - 3.6).abs() < 1e-12);
         for step in 0..=20 {
             let time_s = 2.0 + 0.08 * f64::from(step);
@@ -247,11 +267,28 @@ mod tests {
     }
 
     #[test]
+    fn a_tool_point_goes_straight_while_the_flange_swings_about_it() {
+        let (chain, joints) = start();
+        let flange_from_tcp = Rigid::translation(0.0, 0.0, 100.0);
+        let from = chain.base_from_flange(&joints);
+        let turn = Rigid::from_parts(Translation3::identity(), so3::exp(Vec3::x() * 0.3));
+        let to = from * flange_from_tcp * turn * flange_from_tcp.inverse();
+        let way = Way::straight(&chain, &joints, &to, &flange_from_tcp).expect("reachable");
+        // The turn is all that takes time.
+        assert!((way.cruise_s(SPEED, 1.0) - 0.6).abs() < 1e-9);
+        let tcp = |flange: Rigid| (flange * flange_from_tcp).translation.vector;
+        for part in [0.0, 0.3, 0.7, 1.0] {
+            assert!((tcp(way.pose_at(&chain, part)) - tcp(from)).norm() < 1e-9);
+        }
+        assert!((way.pose_at(&chain, 1.0).translation.vector - to.translation.vector).norm() < 1e-9);
+    }
+
+    #[test]
     fn the_part_done_grows_evenly_and_ends_at_one() {
         let (chain, joints) = start();
         for target_mm in [0.0, 0.5, 3.0, 60.0] {
             let to = chain.base_from_flange(&joints) * Translation3::new(target_mm, 0.0, 0.0);
-            let way = Way::straight(&chain, &joints, &to).expect("reachable");
+            let way = Way::straight(&chain, &joints, &to, &Rigid::identity()).expect("reachable");
             let cruise_s = way.cruise_s(SPEED, 1.0);
             assert!((cruise_s - target_mm / 50.0).abs() < 1e-9);
             let motion = Motion::new(way, 1.0, cruise_s);
@@ -268,7 +305,8 @@ mod tests {
     fn a_stopped_motion_stays() {
         let (chain, joints) = start();
         let to = chain.base_from_flange(&joints) * Translation3::new(50.0, 0.0, 0.0);
-        let mut motion = Motion::new(Way::straight(&chain, &joints, &to).expect("reachable"), 0.0, 1.0);
+        let mut motion =
+            Motion::new(Way::straight(&chain, &joints, &to, &Rigid::identity()).expect("reachable"), 0.0, 1.0);
         let at_stop = motion.pose_at(&chain, 0.4);
         motion.stop_at(0.4);
         assert!((motion.end_s() - 0.4).abs() < 1e-12);
@@ -279,7 +317,7 @@ mod tests {
     fn ways_through_limits_reach_and_singular_poses_are_refused() {
         let (chain, joints) = start();
         let home = chain.base_from_flange(&joints);
-        let refusal = |pose: Rigid| Way::straight(&chain, &joints, &pose).err();
+        let refusal = |pose: Rigid| Way::straight(&chain, &joints, &pose, &Rigid::identity()).err();
         let far = Rigid::translation(400.0, 0.0, 0.0) * home;
         // Before the arm is stretched its elbow would have to leap.
         assert!(matches!(refusal(far), Some(Unreachable::OutOfReach | Unreachable::Singular { .. })));

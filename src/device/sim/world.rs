@@ -63,6 +63,8 @@ pub enum Order {
     Straight {
         /// Where to.
         base_from_flange: Rigid,
+        /// The point that goes straight, and at the speed.
+        flange_from_tcp: Rigid,
         /// How fast.
         speed: Speed,
     },
@@ -87,6 +89,11 @@ pub enum Order {
 pub enum Step {
     /// Goes somewhere, and waits until it is there.
     Go(Order),
+    /// Makes another tool point the active one.
+    SetTcp {
+        /// Where it is.
+        flange_from_tcp: Rigid,
+    },
     /// Sets a register.
     SetRegister {
         /// Which.
@@ -104,11 +111,13 @@ pub const NUM_REGISTERS: usize = 48;
 pub struct ArmReport {
     /// The flange as commanded: its noise is what the controller does not know.
     pub base_from_flange: Rigid,
+    /// The tool point that is active.
+    pub flange_from_tcp: Rigid,
     /// Joint angles of the mechanism, rad.
     pub joints: Joints,
     /// The same as the controller shows them, degrees.
     pub shown_deg: [f64; 6],
-    /// How fast the flange goes, in the base, mm/s.
+    /// How fast the tool point goes, in the base, mm/s.
     pub velocity_mm_s: Vec3,
     /// How fast it turns, in the base, rad/s.
     pub turning_rad_s: Vec3,
@@ -120,6 +129,14 @@ pub struct ArmReport {
     pub registers: [i32; NUM_REGISTERS],
     /// Since the cell began, s of its own clock.
     pub time_s: f64,
+}
+
+impl ArmReport {
+    /// Where the tool point is.
+    #[must_use]
+    pub fn base_from_tcp(&self) -> Rigid {
+        self.base_from_flange * self.flange_from_tcp
+    }
 }
 
 /// A motion, and how far the flange truly is from where the controller says.
@@ -154,6 +171,7 @@ struct State {
     /// What is left of the program that runs, and when that began.
     program: VecDeque<Step>,
     program_at_s: f64,
+    flange_from_tcp: Rigid,
     registers: [i32; NUM_REGISTERS],
     pose_noise: Random,
     faults: FaultPlan,
@@ -224,6 +242,7 @@ impl World {
                 past: VecDeque::new(),
                 program: VecDeque::new(),
                 program_at_s: 0.0,
+                flange_from_tcp: options.flange_from_tcp,
                 registers: [0; NUM_REGISTERS],
                 pose_noise: Random::new(options.seed, stream::POSE),
                 faults: FaultPlan::new(&options.faults),
@@ -239,6 +258,7 @@ impl World {
             flange_from_sensor: self.layout.flange_from_sensor,
             ball_in_base: self.layout.ball_in_base,
             radius_mm: self.scene.radius_mm,
+            push_mm: PUSH_MM,
             rough_flange_from_sensor: self.layout.rough_flange_from_sensor,
             pose_std_mm_deg: [self.pose_std[0], self.pose_std[1].to_degrees()],
             profile_std_mm: self.scene.profile_std_mm,
@@ -261,9 +281,12 @@ impl World {
         let is_moving = time_s < motion.end_s();
         let base_from_flange = motion.pose_at(&self.layout.chain, time_s);
         let before = motion.pose_at(&self.layout.chain, time_s - SPEED_OVER_S);
+        let flange_from_tcp = state.flange_from_tcp;
+        let [tcp, tcp_before] = [base_from_flange, before].map(|flange| (flange * flange_from_tcp).translation.vector);
         ArmReport {
             base_from_flange,
-            velocity_mm_s: (base_from_flange.translation.vector - before.translation.vector) / SPEED_OVER_S,
+            flange_from_tcp,
+            velocity_mm_s: (tcp - tcp_before) / SPEED_OVER_S,
             turning_rad_s: so3::log(&(base_from_flange.rotation * before.rotation.inverse())) / SPEED_OVER_S,
             joints,
             shown_deg: self.layout.chain.shown_deg(&joints),
@@ -318,6 +341,7 @@ impl World {
                         state.program.clear();
                     }
                 }
+                Some(Step::SetTcp { flange_from_tcp }) => state.flange_from_tcp = flange_from_tcp,
                 Some(Step::SetRegister { register, value }) => {
                     if let Some(place) = state.registers.get_mut(usize::from(register)) {
                         *place = value;
@@ -339,8 +363,8 @@ impl World {
         let chain = &self.layout.chain;
         let joints = state.leg.motion.joints_at(time_s);
         let (way, cruise_s) = match *order {
-            Order::Straight { base_from_flange, speed } => {
-                let way = Way::straight(chain, &joints, &base_from_flange)?;
+            Order::Straight { base_from_flange, flange_from_tcp, speed } => {
+                let way = Way::straight(chain, &joints, &base_from_flange, &flange_from_tcp)?;
                 let cruise_s = way.cruise_s(speed, 1.0);
                 (way, cruise_s)
             }

@@ -14,6 +14,9 @@ use crate::watch::Wake;
 /// Requests that may wait; there is hardly ever more than one.
 const MAX_WAITING: usize = 8;
 
+/// Between two looks at what has to hold while an answer is waited for.
+const WATCH_EVERY: Duration = Duration::from_millis(20);
+
 /// What the thread is to do next, the most urgent first.
 pub(super) enum Next<Request> {
     /// To end.
@@ -216,6 +219,18 @@ impl<Request> Post<Request> {
         patience: Duration,
         request: impl FnOnce(SyncSender<Result<Answer, DeviceError>>) -> Request,
     ) -> Result<Answer, DeviceError> {
+        self.ask_while(what, binding, patience, || Ok(()), request)
+    }
+
+    /// The same, as long as something else holds: otherwise its error is the answer, and the thread is at the request still.
+    pub fn ask_while<Answer>(
+        &self,
+        what: &str,
+        binding: Option<Binding>,
+        patience: Duration,
+        holds: impl Fn() -> Result<(), DeviceError>,
+        request: impl FnOnce(SyncSender<Result<Answer, DeviceError>>) -> Request,
+    ) -> Result<Answer, DeviceError> {
         self.need_connection(what, binding)?;
         let (sender, receiver): (_, Receiver<Result<Answer, DeviceError>>) = sync_channel(1);
         let timeout = || DeviceError::Timeout { device: self.device, request: what.to_owned(), waited: patience };
@@ -233,15 +248,23 @@ impl<Request> Post<Request> {
             inside.num_stops_asked
         };
         self.board.changed.notify_all();
-        match receiver.recv_timeout(patience) {
-            Ok(answer) => answer,
-            Err(RecvTimeoutError::Timeout) => Err(timeout()),
-            Err(RecvTimeoutError::Disconnected) if self.num_stops_asked() != num_stops_asked => Err(stopped()),
-            Err(RecvTimeoutError::Disconnected) => Err(self.closed(what)),
+        let deadline = Instant::now() + patience;
+        loop {
+            let left = deadline.saturating_duration_since(Instant::now());
+            match receiver.recv_timeout(left.min(WATCH_EVERY)) {
+                Ok(answer) => return answer,
+                Err(RecvTimeoutError::Timeout) if left.is_zero() => return Err(timeout()),
+                Err(RecvTimeoutError::Timeout) => holds()?,
+                Err(RecvTimeoutError::Disconnected) if self.num_stops_asked() != num_stops_asked => {
+                    return Err(stopped());
+                }
+                Err(RecvTimeoutError::Disconnected) => return Err(self.closed(what)),
+            }
         }
     }
 
-    fn need_connection(&self, what: &str, binding: Option<Binding>) -> Result<(), DeviceError> {
+    /// The connection that is there, and to which somebody is bound; or why there is none.
+    pub fn need_connection(&self, what: &str, binding: Option<Binding>) -> Result<(), DeviceError> {
         let (is_made, state, num_connections) = {
             let link = lock(&self.link);
             (link.is_made(), link.state(Instant::now()), link.num_connections())

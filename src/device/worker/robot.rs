@@ -181,9 +181,23 @@ impl RobotClient {
     /// # Errors
     /// [`DeviceError`]; `Stopped` if somebody stopped the robot meanwhile.
     pub fn move_to(&self, motion: LinearMove, patience: Duration) -> Result<(), DeviceError> {
+        self.move_while(motion, patience, || Ok(()))
+    }
+
+    /// The same, as long as something else holds. Where that fails the robot moves on: it is the asker's to stop it.
+    ///
+    /// # Errors
+    /// [`DeviceError`]; that of `holds` as soon as it fails.
+    pub fn move_while(
+        &self,
+        motion: LinearMove,
+        patience: Duration,
+        holds: impl Fn() -> Result<(), DeviceError>,
+    ) -> Result<(), DeviceError> {
         let deadline = Instant::now() + patience;
         let patience = patience + self.post.deadlines.request * 3;
-        self.post.ask("a move", self.binding, patience, |reply| RobotRequest::Move { motion, deadline, reply })
+        let request = |reply| RobotRequest::Move { motion, deadline, reply };
+        self.post.ask_while("a move", self.binding, patience, holds, request)
     }
 
     /// Stops the robot, whatever it does. Comes back at once.

@@ -181,6 +181,14 @@ impl SensorClient {
         self.post.ask("clearing its memory", self.binding, self.post.deadlines.request * 2, SensorRequest::Forget)
     }
 
+    /// Whether the connection still holds.
+    ///
+    /// # Errors
+    /// [`DeviceError`]: why it does not.
+    pub fn check_connection(&self) -> Result<(), DeviceError> {
+        self.post.need_connection("a profile", self.binding)
+    }
+
     /// What to look for in the live profiles; `None`: for nothing.
     pub fn look_for(&self, ball: Option<ArcOptions>) {
         let mut shown = lock(&self.shown);

@@ -142,7 +142,11 @@ pub const fn sensor_kind_hint(kind: SensorKind) -> &'static str {
 /// When a broken link is tried again.
 #[must_use]
 pub fn again_in(wait: Duration) -> String {
-    format!("Tried again in {} s.", wait.as_secs_f64().ceil())
+    if wait.is_zero() {
+        "Tried again now.".to_owned()
+    } else {
+        format!("Tried again in {} s.", wait.as_secs_f64().ceil())
+    }
 }
 /// A broken link that only a person can mend.
 pub const NOT_AGAIN: &str = "Mend it, then connect again.";
@@ -459,6 +463,9 @@ pub fn next_button(label: &str) -> String {
 pub const MOVING: &str = "The robot moves.";
 /// The same.
 pub const SETTLING: &str = "Waiting until the robot stands still and a later profile comes.";
+/// The same where a person or another program saves the profiles.
+pub const SETTLING_BY_FOLDER: &str =
+    "Waiting until the robot stands still and a profile comes: save one into the watched folder now.";
 /// The same.
 pub const THINKING: &str = "Working out the next step.";
 /// The same.

@@ -109,10 +109,11 @@ pub fn reason_of_end(end: &RoutineEnd) -> Option<String> {
             "the robot did not stand still: it moved by {moved_mm:.3} mm during a profile, again and again. Let it settle longer, or allow more"
         ),
         RoutineEnd::StaleProfiles { trigger_count } => format!(
-            "no profile came that is later than the move: the trigger count stayed at {trigger_count}. See whether the profiler still measures, and how it is triggered"
+            "no profile came that is later than the move: the trigger count stayed at {trigger_count}. See whether the profiler still measures, and how it is triggered; into a watched folder save a profile for each capture"
         ),
         RoutineEnd::Failed { error, robot_stopped: Some(true) } => format!("{error}. No move is under way"),
         RoutineEnd::Failed { error, robot_stopped } => format!("{error}. {}", stop_taken(*robot_stopped)),
+        RoutineEnd::Stopped { robot_stopped: Some(true) } => "stopped".to_owned(),
         RoutineEnd::Stopped { robot_stopped } => format!("stopped on request. {}", stop_taken(*robot_stopped)),
     })
 }

@@ -151,7 +151,10 @@ impl Workbench {
     fn proposal_of(&self, station: PlannedStation, reason: String) -> Proposal {
         let search = self.search_at_stations();
         let oblique = search.and_then(|search| self.check_travel(&station.base_from_flange, &search).ok().flatten());
-        let reason = oblique.map_or(reason.clone(), |deg| format!("{reason}. {}", words::travel_is_oblique(deg)));
+        let reason = match oblique {
+            Some(angle_deg) => format!("{reason}. {}", words::travel_is_oblique(angle_deg)),
+            None => reason,
+        };
         let mut proposal = Proposal { station, reason, distance_mm: 0.0, turn_deg: 0.0, refusal: None };
         self.check_against_robot(&mut proposal);
         proposal

@@ -20,6 +20,8 @@ const ACCELERATION_PERCENT: u16 = 50;
 const LOOK: Duration = Duration::from_millis(5);
 /// What the server answers to a target that the arm cannot get to; it looks before it moves.
 const NOT_REACHABLE: &str = "position-is-not-reachable";
+/// The server that looks on must not hold up a stop for longer.
+const LOOKING_ON_PATIENCE: Duration = Duration::from_millis(200);
 /// Columns of a value hold six digits before the point.
 const MAX_VALUE: f64 = 999_999.0;
 
@@ -85,14 +87,17 @@ impl RobotDriver for MappdkRobot {
     }
 
     fn report(&mut self, deadline: Instant) -> Result<RobotReport, DeviceError> {
-        let line = match &mut self.looking_on {
-            Some(line) => Some(line),
+        match (&mut self.looking_on, &self.motion) {
+            (Some(line), Some(_)) => match ask_pose(line, deadline.min(Instant::now() + LOOKING_ON_PATIENCE)) {
+                Ok(pose) => self.last_pose = (pose, Instant::now()),
+                // An answer may still come, to a question that was another by then.
+                Err(DeviceError::Timeout { .. }) => self.looking_on = None,
+                Err(error) => return Err(error),
+            },
+            (Some(line), None) => self.last_pose = (ask_pose(line, deadline)?, Instant::now()),
+            (None, None) => self.last_pose = (ask_pose(&mut self.commands, deadline)?, Instant::now()),
             // The only connection is deaf now.
-            None if self.motion.is_some() => None,
-            None => Some(&mut self.commands),
-        };
-        if let Some(line) = line {
-            self.last_pose = (ask_pose(line, deadline)?, Instant::now());
+            (None, Some(_)) => {}
         }
         let (base_from_flange, received_at) = self.last_pose;
         let tool = if self.looking_on.is_some() {

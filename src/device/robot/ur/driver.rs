@@ -31,7 +31,7 @@ const START_GRACE: Duration = Duration::from_secs(2);
 const END_GRACE: Duration = Duration::from_millis(300);
 /// The switch between local and remote control is looked at so often, and a dashboard that failed is tried again.
 const REMOTE_AGE: Duration = Duration::from_secs(1);
-/// A dashboard that is tried again must not hold up the robot for longer.
+/// The dashboard must not hold up the robot for longer, least of all a stop.
 const DASHBOARD_PATIENCE: Duration = Duration::from_millis(200);
 
 /// How far the other ports are from that of RTDE (30004): secondary interface 30002, realtime 30003, dashboard 29999.
@@ -47,6 +47,8 @@ pub struct UrRobot {
     dashboard: Option<Dashboard>,
     dashboard_tried_at: Instant,
     motion: Option<Underway>,
+    /// The operator's tool point, while a program of ours has or may have set it aside.
+    set_aside: Option<UrPose>,
     last_mark: i32,
 }
 
@@ -85,15 +87,17 @@ impl UrRobot {
             dashboard,
             dashboard_tried_at,
             motion: None,
+            set_aside: None,
             last_mark: state.mark,
         })
     }
 
     fn readiness(&mut self, state: &UrState, deadline: Instant) -> Readiness {
         if self.dashboard_tried_at.elapsed() >= REMOTE_AGE {
+            let deadline = deadline.min(Instant::now() + DASHBOARD_PATIENCE);
             self.dashboard = match self.dashboard.take() {
                 Some(mut dashboard) => dashboard.ask(deadline).is_ok().then_some(dashboard),
-                None => Dashboard::connect(&self.endpoint, deadline.min(Instant::now() + DASHBOARD_PATIENCE)).ok(),
+                None => Dashboard::connect(&self.endpoint, deadline).ok(),
             };
             self.dashboard_tried_at = Instant::now();
         }
@@ -124,17 +128,21 @@ impl UrRobot {
         }
     }
 
-    /// Sends a program that does this and then writes the next mark.
+    /// Sends a program that does this, gives the operator's tool point back, and then writes the next mark.
     fn run(
         &mut self,
         script: &mut Wire,
         name: &str,
-        statement: Statement,
+        mut statements: Vec<Statement>,
         deadline: Instant,
     ) -> Result<(), DeviceError> {
         self.last_mark = self.last_mark.checked_add(1).unwrap_or(1);
-        let mark = Statement::WriteOutputInteger { register: MARK_REGISTER, value: self.last_mark };
-        let program = Program { name: name.to_owned(), statements: vec![statement, mark] };
+        if let Some(offset) = self.set_aside {
+            // Else the mark could be told with a pose that does not fit the tool point yet.
+            statements.extend([Statement::SetTcp { offset }, Statement::Sync]);
+        }
+        statements.push(Statement::WriteOutputInteger { register: MARK_REGISTER, value: self.last_mark });
+        let program = Program { name: name.to_owned(), statements };
         script.send(name, program.encode().as_bytes(), deadline)
     }
 
@@ -175,8 +183,14 @@ impl RobotDriver for UrRobot {
         refuse_unready(self.readiness(&state, deadline))?;
         let mut script = self.connect_script(deadline)?;
         self.stream.last_warning = None;
-        let statement = move_statement(&state, motion);
-        self.run(&mut script, "handeye_move", statement, deadline)?;
+        let mut statements = vec![move_statement(&state, motion)];
+        // One that an aborted program of ours has left at the flange is still to be given back.
+        self.set_aside = state.tcp_offset().or(self.set_aside);
+        if self.set_aside.is_some() {
+            // `movel` leads the tool point straight and at the speed: were it ahead of the flange, that would swing.
+            statements.insert(0, Statement::SetTcp { offset: UrPose::AT_FLANGE });
+        }
+        self.run(&mut script, "handeye_move", statements, deadline)?;
         self.motion = Some(Underway {
             script: Some(script),
             target: motion.base_from_flange,
@@ -202,6 +216,7 @@ impl RobotDriver for UrRobot {
             }
             let target = motion.target;
             self.motion = None;
+            self.set_aside = None;
             check_arrival(DEVICE, &target, &state.base_from_flange())?;
             return Ok(MoveState::Done);
         }
@@ -236,20 +251,36 @@ impl RobotDriver for UrRobot {
         let start = Instant::now();
         let half_way = start + deadline.saturating_duration_since(start) / 2;
         // Over the same connection, so that it cannot overtake the move.
-        let mut script = match self.motion.take().and_then(|motion| motion.script) {
-            Some(script) => script,
-            None => self.connect_script(deadline)?,
-        };
-        self.run(&mut script, request, STOP, deadline)?;
+        let mut script = self.motion.take().and_then(|motion| motion.script);
+        let mut is_sent = false;
+        let mut sends_left = 2;
         loop {
-            script.take_arrived(request, Duration::ZERO)?;
+            // What was sent to one that hung up may not have been read; another may have a place for it.
+            if script.as_mut().is_some_and(|script| script.take_arrived(request, Duration::ZERO).is_err()) {
+                (script, is_sent) = (None, false);
+            }
+            if !is_sent && sends_left > 0 {
+                sends_left -= 1;
+                let mut wire = match script.take() {
+                    Some(wire) => wire,
+                    None => self.connect_script(deadline)?,
+                };
+                match self.run(&mut wire, request, vec![STOP], deadline) {
+                    Ok(()) => (script, is_sent) = (Some(wire), true),
+                    Err(_) if sends_left > 0 => continue,
+                    Err(error) => return Err(error),
+                }
+            }
             let state = self.stream.newest(deadline)?;
             let readiness = state.readiness(self.is_remote());
             // In a stop of its own, or in local control, the controller takes no program of ours, and does not always say
             // that it is in one. Then it is enough that none runs; one that is held up goes on as soon as it may.
             let takes_none = matches!(readiness, Readiness::NotReady { .. }) || Instant::now() >= half_way;
-            let is_obeyed = state.mark == self.last_mark || takes_none && state.is_program_stopped();
-            if is_obeyed && state.is_standing() {
+            let is_done = state.mark == self.last_mark;
+            if (is_done || takes_none && state.is_program_stopped()) && state.is_standing() {
+                if is_done {
+                    self.set_aside = None;
+                }
                 return Ok(());
             }
             if Instant::now() >= deadline {
@@ -274,11 +305,19 @@ impl RobotDriver for UrRobot {
 /// A robot that nobody looks after any more has to stop.
 impl Drop for UrRobot {
     fn drop(&mut self) {
-        /// A few bytes into a buffer that is empty.
-        const PATIENCE: Duration = Duration::from_millis(100);
-        if let Some(mut script) = self.motion.take().and_then(|motion| motion.script) {
-            // Where that fails there is nobody left to be told.
-            let _ = self.run(&mut script, "handeye_stop", STOP, Instant::now() + PATIENCE);
+        /// A few bytes into a buffer that is empty, or a connection.
+        const PATIENCE: Duration = Duration::from_millis(200);
+        let request = "handeye_stop";
+        let Some(motion) = self.motion.take() else { return };
+        let deadline = Instant::now() + PATIENCE;
+        let is_sent = motion.script.is_some_and(|mut script| {
+            // The first takes what came before the end, the second finds that.
+            (0..2).all(|_| script.take_arrived(request, Duration::ZERO).is_ok())
+                && self.run(&mut script, request, vec![STOP], deadline).is_ok()
+        });
+        if !is_sent && let Ok(mut script) = self.connect_script(deadline) {
+            // Where that fails too there is nobody left to be told.
+            let _ = self.run(&mut script, request, vec![STOP], deadline);
         }
     }
 }
@@ -317,7 +356,7 @@ fn move_statement(state: &UrState, motion: &LinearMove) -> Statement {
     let straight_s = distance_mm / motion.speed_mm_s.max(f64::MIN_POSITIVE);
     let turn_s = turn_deg / motion.rotation_speed_deg_s.max(f64::MIN_POSITIVE);
     Statement::MoveL {
-        pose: UrPose::from_pose(&state.tcp_target(target)),
+        pose: UrPose::from_pose(&Transform::from_rigid(*target.rigid())),
         acceleration_m_s2: ACCELERATION_M_S2,
         speed_m_s: motion.speed_mm_s / 1000.0,
         time_s: if turn_s > straight_s { PEAK_OVER_MEAN * turn_s } else { 0.0 },

@@ -13,6 +13,9 @@ pub const MAX_PROGRAM_BYTES: usize = 64 * 1024;
 pub struct UrPose(pub [f64; 6]);
 
 impl UrPose {
+    /// A tool point in the middle of the flange.
+    pub const AT_FLANGE: Self = Self([0.0; 6]);
+
     /// As the controller would write it.
     #[must_use]
     pub fn from_pose(base_from_tcp: &Transform<Base, Tcp>) -> Self {
@@ -59,6 +62,13 @@ pub enum Statement {
         /// What.
         value: i32,
     },
+    /// Says where on the flange the tool point is from now on.
+    SetTcp {
+        /// The tool point in the flange.
+        offset: UrPose,
+    },
+    /// Waits for the end of the controller's cycle: what was set before is then what the controller tells.
+    Sync,
     /// Slows the tool point down to a stand.
     StopL {
         /// Deceleration, m/s².
@@ -84,6 +94,8 @@ impl Statement {
             Self::WriteOutputInteger { register, value } => {
                 format!("write_output_integer_register({register}, {value})")
             }
+            Self::SetTcp { offset: UrPose(offset) } => format!("set_tcp(p[{}])", numbers(offset)),
+            Self::Sync => "sync()".to_owned(),
             Self::StopL { deceleration_m_s2 } => format!("stopl({deceleration_m_s2:.6})"),
             Self::StopJ { deceleration_rad_s2 } => format!("stopj({deceleration_rad_s2:.6})"),
         }
@@ -109,6 +121,8 @@ impl Statement {
                 register: whole(arguments.named("register", 0)?)?.try_into().ok()?,
                 value: whole(arguments.named("value", 1)?)?,
             }),
+            "set_tcp" => Some(Self::SetTcp { offset: arguments.pose? }),
+            "sync" => Some(Self::Sync),
             "stopl" => Some(Self::StopL { deceleration_m_s2: arguments.named("a", 0).unwrap_or(20.0) }),
             "stopj" => Some(Self::StopJ { deceleration_rad_s2: arguments.named("a", 0)? }),
             _ => None,
@@ -253,7 +267,7 @@ impl Program {
                 break;
             }
             let statement = Statement::parse(line)
-                .ok_or_else(|| MessageError::new(line, "movel, movej, stopl, stopj or a register"))?;
+                .ok_or_else(|| MessageError::new(line, "movel, movej, set_tcp, sync, stopl, stopj or a register"))?;
             statements.push(statement);
         }
         Ok(Self { name, statements })

@@ -75,9 +75,10 @@ impl UrState {
         self.base_from_tcp * self.tool_offset().inverse()
     }
 
-    /// Where the tool point goes when the flange goes there.
-    pub(super) fn tcp_target(&self, base_from_flange: &Transform<Base, Flange>) -> Transform<Base, Tcp> {
-        *base_from_flange * self.tool_offset()
+    /// The active tool point as the controller writes it; `None` where it is the flange, or nobody tells.
+    pub(super) fn tcp_offset(&self) -> Option<UrPose> {
+        let offset = UrPose::from_pose(&Transform::from_rigid(*self.flange_from_tcp?.rigid()));
+        (offset != UrPose::AT_FLANGE).then_some(offset)
     }
 
     fn tool_offset(&self) -> Transform<Flange, Tcp> {

@@ -8,7 +8,7 @@ use crate::device::sim::head::Height;
 use crate::device::sim::motion::Speed;
 use crate::device::sim::net::Connection;
 use crate::device::sim::world::{Order, World};
-use crate::geometry::Transform;
+use crate::geometry::{Rigid, Transform};
 
 /// The least step of a reported coordinate, mm.
 const RESOLUTION_MM: f64 = 0.001;
@@ -59,7 +59,8 @@ fn answer_of_robot(world: &World, ask: &Ask) -> Answer {
             let speed = Speed { linear_mm_s: *speed_mm_s, turning_rad_s: rotation_speed_deg_s.to_radians() };
             let target = pose.pose(None).map_err(|error| error.to_string());
             let started = target.and_then(|target| {
-                let order = Order::Straight { base_from_flange: *target.rigid(), speed };
+                let flange_from_tcp = Rigid::identity();
+                let order = Order::Straight { base_from_flange: *target.rigid(), flange_from_tcp, speed };
                 world.start_motion(&order).map_err(|error| error.to_string())
             });
             match started {

@@ -95,7 +95,7 @@ fn order_of_joints(world: &World, motion: &Motion) -> Result<Order, &'static str
 /// Where a move is straight its speed is one in mm/s.
 fn straight(base_from_flange: Rigid, speed_mm_s: u16) -> Order {
     let speed = Speed { linear_mm_s: f64::from(speed_mm_s), turning_rad_s: TURNING_RAD_S };
-    Order::Straight { base_from_flange, speed }
+    Order::Straight { base_from_flange, flange_from_tcp: Rigid::identity(), speed }
 }
 
 fn percent(speed: u16) -> f64 {
@@ -132,7 +132,7 @@ mod tests {
         let by_joints = Order::ToJoints { shown_deg: arm.shown_deg, speed_part: 0.4 };
         assert_eq!(order_of_joints(&world, &motion), Ok(by_joints));
         let straight = order_of_joints(&world, &Motion { is_linear: true, ..motion });
-        let Ok(Order::Straight { base_from_flange, speed }) = straight else { panic!("{straight:?}") };
+        let Ok(Order::Straight { base_from_flange, speed, .. }) = straight else { panic!("{straight:?}") };
         assert!((speed.linear_mm_s - 40.0).abs() < 1e-12);
         assert!((base_from_flange.translation.vector - arm.base_from_flange.translation.vector).norm() < 1e-9);
     }

@@ -111,8 +111,8 @@ fn data(world: &World, recipe: &Recipe) -> Vec<u8> {
 }
 
 /// A pose as the controller writes it: m, and the rotation vector.
-pub fn pose_m(base_from_flange: &Rigid) -> [f64; 6] {
-    UrPose::from_pose(&Transform::from_rigid(*base_from_flange)).0
+pub fn pose_m(pose: &Rigid) -> [f64; 6] {
+    UrPose::from_pose(&Transform::from_rigid(*pose)).0
 }
 
 fn type_of(name: &str, value: Option<Value>) -> &'static str {
@@ -143,7 +143,8 @@ fn output(arm: &ArmReport, name: &str) -> Option<Value> {
     Some(match name {
         "timestamp" => Value::F64(arm.time_s),
         "actual_q" | "target_q" => Value::Vector6(arm.joints.into()),
-        "actual_TCP_pose" | "target_TCP_pose" => Value::Vector6(pose_m(&arm.base_from_flange)),
+        "actual_TCP_pose" | "target_TCP_pose" => Value::Vector6(pose_m(&arm.base_from_tcp())),
+        "tcp_offset" => Value::Vector6(pose_m(&arm.flange_from_tcp)),
         "actual_TCP_speed" | "target_TCP_speed" => {
             let [x, y, z] = arm.velocity_mm_s.map(|value| value / 1000.0).into();
             let [rx, ry, rz] = arm.turning_rad_s.into();
@@ -161,8 +162,7 @@ fn output(arm: &ArmReport, name: &str) -> Option<Value> {
         | "joint_temperatures"
         | "actual_joint_voltage"
         | "ft_raw_wrench"
-        | "payload_inertia"
-        | "tcp_offset" => STILL,
+        | "payload_inertia" => STILL,
         "elbow_position" | "elbow_velocity" | "actual_tool_accelerometer" | "payload_cog" => Value::Vector3([0.0; 3]),
         "joint_mode" => Value::Vector6I32([JOINT_MODE_RUNNING; 6]),
         "robot_mode" => Value::I32(ROBOT_MODE_RUNNING),

@@ -61,25 +61,29 @@ fn run(world: &World, text: &str) {
         return;
     }
     let Ok(program) = Program::parse(text) else { return };
-    let from = world.arm().base_from_flange;
+    let arm = world.arm();
     let mut steps = Vec::new();
-    let mut at = from;
+    let [mut base_from_flange, mut flange_from_tcp] = [arm.base_from_flange, arm.flange_from_tcp];
     for statement in program.statements {
         match statement {
             Statement::MoveL { pose, speed_m_s, time_s, .. } => {
-                let target = *pose.pose().rigid();
-                let speed = speed_of(&at, &target, speed_m_s, time_s);
-                steps.push(Step::Go(Order::Straight { base_from_flange: target, speed }));
-                at = target;
+                let base_from_tcp = *pose.pose().rigid();
+                let speed = speed_of(&(base_from_flange * flange_from_tcp), &base_from_tcp, speed_m_s, time_s);
+                base_from_flange = base_from_tcp * flange_from_tcp.inverse();
+                steps.push(Step::Go(Order::Straight { base_from_flange, flange_from_tcp, speed }));
             }
             Statement::MoveJ { joints_rad, speed_rad_s, .. } => {
                 let shown_deg = joints_rad.map(f64::to_degrees);
                 let speed_part = speed_rad_s / Speed::FULL.turning_rad_s;
                 steps.push(Step::Go(Order::ToJoints { shown_deg, speed_part }));
             }
+            Statement::SetTcp { offset } => {
+                flange_from_tcp = *offset.pose().rigid();
+                steps.push(Step::SetTcp { flange_from_tcp });
+            }
             Statement::WriteOutputInteger { register, value } => steps.push(Step::SetRegister { register, value }),
-            // To begin a program has stopped what ran before; inside of one each motion ends standing.
-            Statement::StopL { .. } | Statement::StopJ { .. } => {}
+            // To begin a program has stopped what ran before; inside of one each motion ends standing. There are no cycles.
+            Statement::StopL { .. } | Statement::StopJ { .. } | Statement::Sync => {}
         }
     }
     world.run_program(steps);
@@ -106,8 +110,8 @@ fn state_message(world: &World) -> Vec<u8> {
     mode.extend([7, 0]);
     mode.extend([1.0_f64, 1.0, 1.0].map(f64::to_be_bytes).concat());
     mode.push(0);
-    let mut cartesian = pose_m(&arm.base_from_flange).map(f64::to_be_bytes).concat();
-    cartesian.extend([0.0_f64; 6].map(f64::to_be_bytes).concat());
+    let cartesian =
+        [arm.base_from_tcp(), arm.flange_from_tcp].map(|pose| pose_m(&pose).map(f64::to_be_bytes).concat()).concat();
     let parts = [part(0, &mode), part(4, &cartesian)].concat();
     part(ROBOT_STATE, &parts)
 }
@@ -127,7 +131,7 @@ fn microseconds(arm: &ArmReport) -> u64 {
 fn realtime_message(world: &World) -> Vec<u8> {
     let arm = world.arm();
     let joints: [f64; 6] = arm.joints.into();
-    let pose = pose_m(&arm.base_from_flange);
+    let pose = pose_m(&arm.base_from_tcp());
     let mut message = vec![0; REALTIME_LEN];
     let mut put = |at: usize, bytes: &[u8]| message[at..at + bytes.len()].copy_from_slice(bytes);
     put(0, &i32::try_from(REALTIME_LEN).unwrap_or(i32::MAX).to_be_bytes());
