@@ -149,4 +149,9 @@ if __name__ == "__main__":
     serve("robot", robot, ports[0])
     serve("profiler", Profiler(robot), ports[1])
     with contextlib.suppress(KeyboardInterrupt):
-        sys.stdin.read()  # until its input ends, or Ctrl-C
+        began = time.monotonic()
+        if sys.stdin:
+            sys.stdin.read()  # until its input ends, or Ctrl-C
+        if time.monotonic() - began < 0.2:
+            print("no input to wait for: serving until it is stopped (Ctrl-C, kill)", flush=True)
+            threading.Event().wait()

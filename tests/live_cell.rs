@@ -6,14 +6,14 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::{Duration, Instant};
 
-use handeye::app::cell::{Activity, CellCommand, CellSettings, StationRoutine};
+use handeye::app::cell::{Activity, CellCommand, CellSettings, RoughMounting, StationRoutine};
 use handeye::app::compare::distance_from_truth;
 use handeye::app::{Command, NoticeKind, RecoverySettings, Workbench};
 use handeye::calibrate::{Method, Solution};
-use handeye::device::sim::{Fault, FaultSpec, Head, SimOptions};
+use handeye::device::sim::{Fault, FaultSpec, Head, SimCell, SimOptions};
 use handeye::device::{LinkState, MotionRefusal, RobotKind, RoutineEnd, SearchPhase, SensorKind, WorkspaceBox};
 use handeye::geometry::Vec3;
-use handeye::session::{Edit, Row, Session, Target};
+use handeye::session::{Edit, Row, Session, SetupField, Target};
 
 /// Long past anything that is waited for here, on a slow machine as well.
 const PATIENCE: Duration = Duration::from_mins(2);
@@ -56,6 +56,26 @@ impl Bench {
         });
         self.change_settings(|settings| settings.settle.settle_ms = 5);
         self
+    }
+
+    /// A session of its own, with a cell that is not for practice.
+    fn connected_to(sim: &SimCell) -> Self {
+        let mut bench = Self::new();
+        bench.workbench.apply(Command::NewSession(Target::ball(sim.truth.radius_mm)));
+        bench.cell(CellCommand::ConnectRobot(sim.robot_setup.clone()));
+        bench.cell(CellCommand::ConnectSensor(sim.sensor_setup.clone()));
+        bench.wait("the links", |workbench| {
+            let cell = workbench.cell();
+            cell.robot.state == LinkState::Ready && cell.robot.latest.is_some() && cell.live.is_some()
+        });
+        let mounted = sim.truth.rough_flange_from_sensor;
+        let q = mounted.rotation;
+        bench.change_settings(|settings| {
+            settings.settle.settle_ms = 5;
+            let translation_mm = mounted.translation.vector.into();
+            settings.mounting = Some(RoughMounting { translation_mm, quaternion_wxyz: [q.w, q.i, q.j, q.k] });
+        });
+        bench
     }
 
     fn armed(mut self) -> Self {
@@ -103,6 +123,10 @@ impl Bench {
     fn solution(&self) -> &Solution {
         let results = self.workbench.results().expect("solved");
         results.method(Method::BallBundle).expect("run").outcome.as_ref().expect("solved")
+    }
+
+    fn num_errors(&self) -> usize {
+        self.workbench.notices().iter().filter(|notice| notice.kind == NoticeKind::Error).count()
     }
 
     fn last_end(&self) -> &RoutineEnd {
@@ -224,7 +248,9 @@ fn a_stop_a_disarming_a_disconnection_and_a_closed_document_each_stop_the_robot(
         let head = Head::by_id("lj-v7300").expect("there is one");
         let robot = RobotKind::UniversalRobots;
         let options = SimOptions { seed: 2, time_scale: SLOW, robot, head, radius_mm: 30.0, ..SimOptions::default() };
-        let mut bench = Bench::new().practise_with(&options).armed();
+        // Practice ends with its document; a cell of its own goes on.
+        let sim = SimCell::start(&options).expect("ports are free");
+        let mut bench = Bench::connected_to(&sim).armed();
         bench.cell(CellCommand::CaptureStation);
         bench.wait_for_rest();
         let num_captures = bench.session().num_captures();
@@ -238,11 +264,14 @@ fn a_stop_a_disarming_a_disconnection_and_a_closed_document_each_stop_the_robot(
         bench.wait("the robot to set out", |workbench| (position_mm(workbench) - from_mm).norm() > 3.0);
         way(&mut bench);
         bench.wait_for_rest();
-        assert!(
-            matches!(bench.last_end(), RoutineEnd::Stopped { robot_stopped: Some(true) }),
-            "{what}: {:?}",
-            bench.last_end()
-        );
+        let end = bench.workbench.cell().last_end.clone();
+        let is_past = matches!(what, "close" | "another session");
+        match end {
+            None => assert!(is_past, "{what}: nothing is told of how it ended"),
+            Some(RoutineEnd::Stopped { robot_stopped: Some(true) }) => assert!(!is_past, "{what}"),
+            end => panic!("{what}: {end:?}"),
+        }
+        assert_eq!(bench.num_errors(), 0, "{what}: {:?}", bench.workbench.notices());
         bench.check_robot_stands();
         // What is left would take some seconds.
         let left_mm = (position_mm(&bench.workbench) - proposal.station.base_from_flange.translation_mm()).norm();
@@ -428,10 +457,58 @@ fn what_a_routine_was_begun_with_holds_to_its_end() {
 }
 
 #[test]
-fn another_document_is_not_armed() {
-    let mut bench = Bench::practising(18, FAST).armed();
+fn practice_ends_with_its_document_and_tells_of_no_danger() {
+    let mut bench = searching(18, 2);
     bench.workbench.apply(Command::NewSession(Target::ball(10.0)));
-    assert!(!bench.workbench.cell().is_armed);
+    bench.wait_for_rest();
+    let cell = bench.workbench.cell();
+    assert!(!cell.is_armed && !cell.is_practice && cell.robot.state == LinkState::Off && cell.last_end.is_none());
+    assert!(cell.sensor.state == LinkState::Off && cell.search.is_none() && !cell.is_stop_unconfirmed());
+    assert_eq!(bench.session().num_captures(), 0);
+    assert_eq!(bench.num_errors(), 0, "{:?}", bench.workbench.notices());
+
+    let mut bench = Bench::practising(18, SLOW).armed();
+    bench.cell(CellCommand::StartRun { num_stations: 3 });
+    bench.wait("a move", |workbench| workbench.cell().activity == Activity::Moving);
+    bench.cell(CellCommand::EndPractice);
+    bench.wait_for_rest();
+    assert!(bench.workbench.cell().last_end.is_none());
+    assert_eq!(bench.num_errors(), 0, "{:?}", bench.workbench.notices());
+    assert_eq!(bench.workbench.notices().len(), 1, "{:?}", bench.workbench.notices());
+}
+
+#[test]
+fn a_stop_gives_one_line_and_a_run_belongs_to_itself() {
+    let mut bench = Bench::practising(20, SLOW).armed();
+    for _ in 0..2 {
+        bench.cell(CellCommand::StartRun { num_stations: 3 });
+        bench.wait("a move", |workbench| workbench.cell().activity == Activity::Moving);
+        bench.cell(CellCommand::Stop);
+        bench.wait_for_rest();
+        assert_eq!(bench.workbench.notices().len(), 1, "{:?}", bench.workbench.notices());
+        assert_eq!(bench.num_errors(), 0);
+        assert!(bench.workbench.cell().run.is_some());
+    }
+    bench.cell(CellCommand::CaptureStation);
+    assert_eq!(bench.workbench.cell().run, None);
+    bench.wait_for_rest();
+    // The second run goes elsewhere first: where it stands there is a station.
+    let num_stations = bench.session().stations.len();
+    bench.change_settings(|settings| settings.asks_before_motion = true);
+    bench.cell(CellCommand::StartRun { num_stations: 2 });
+    bench.wait("a proposal", |workbench| workbench.cell().run.is_some_and(|run| run.is_asking));
+    assert_eq!(bench.session().stations.len(), num_stations);
+    bench.workbench.apply(Command::NewSession(Target::ball(10.0)));
+    assert_eq!(bench.workbench.cell().run, None);
+}
+
+#[test]
+fn a_run_that_could_not_go_on_is_not_begun() {
+    let mut bench = Bench::practising(21, FAST).armed();
+    bench.change_settings(|settings| settings.mounting = None);
+    bench.cell(CellCommand::StartRun { num_stations: 2 });
+    assert!(bench.last_notice().contains("how the sensor is mounted"), "{}", bench.last_notice());
+    assert!(bench.workbench.cell().run.is_none() && !bench.workbench.cell().is_busy());
 }
 
 #[test]
@@ -503,4 +580,44 @@ fn a_recorded_session_plays_through_the_panel_and_changes_nothing() {
     bench.cell(CellCommand::EndReplay);
     let cell = bench.workbench.cell();
     assert!(cell.replay.is_none() && cell.live.is_none() && cell.robot.latest.is_none());
+}
+
+#[test]
+fn a_search_along_the_laser_line_is_refused_before_anything_moves() {
+    let mut bench = Bench::practising(22, FAST).armed();
+    bench.change_settings(|settings| settings.search.direction = [1.0, 0.0, 0.0]);
+    for command in [CellCommand::FindLargestArc, CellCommand::StartRun { num_stations: 3 }] {
+        bench.cell(command);
+        assert!(bench.last_notice().contains("across the laser line"), "{}", bench.last_notice());
+        assert!(bench.workbench.cell().run.is_none() && !bench.workbench.cell().is_busy());
+    }
+    bench.change_settings(|settings| settings.search.direction = [0.6, 1.0, 0.0]);
+    bench.cell(CellCommand::FindLargestArc);
+    assert!(bench.workbench.cell().is_busy());
+    assert!(bench.last_notice().contains("off the laser plane's normal"), "{}", bench.last_notice());
+    bench.cell(CellCommand::Stop);
+    bench.wait_for_rest();
+}
+
+#[test]
+fn captures_record_what_is_connected_and_another_robot_is_remarked_once() {
+    let options = SimOptions { seed: 23, time_scale: FAST, ..SimOptions::default() };
+    let sim = SimCell::start(&options).expect("ports are free");
+    let mut bench = Bench::connected_to(&sim);
+    bench.cell(CellCommand::CaptureStation);
+    bench.wait_for_rest();
+    assert_eq!(
+        (bench.session().robot.model.as_str(), bench.session().sensor.model.as_str()),
+        ("FANUC", "Keyence LJ-V7000")
+    );
+    assert_eq!(bench.num_undo_steps(), 1);
+    let other = SetupField::RobotModel("UR5e".to_owned());
+    bench.workbench.apply(Command::Edit { edit: Edit::Setup(other), gesture: None });
+    for _ in 0..2 {
+        bench.cell(CellCommand::CaptureStation);
+        bench.wait_for_rest();
+    }
+    let remarks = bench.workbench.notices().iter().filter(|notice| notice.message.contains("Universal Robots"));
+    assert_eq!(remarks.count(), 1, "{:?}", bench.workbench.notices());
+    assert_eq!(bench.session().robot.model, "UR5e");
 }

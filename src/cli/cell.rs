@@ -78,7 +78,7 @@ pub struct CellArgs {
     #[arg(long, value_name = "NAME", default_value = Head::default().id, value_parser = head)]
     pub head: Head,
     /// Radius of the ball, mm.
-    #[arg(long, value_name = "MM", default_value_t = SimOptions::default().radius_mm)]
+    #[arg(long, value_name = "MM", default_value_t = SimOptions::default().radius_mm, value_parser = radius_mm, allow_negative_numbers = true)]
     pub radius_mm: f64,
     /// Added to every port of the real devices.
     #[arg(long, value_name = "N", default_value_t = 0)]
@@ -177,6 +177,11 @@ fn pose(pose: &Rigid, convention: &PoseConvention, decimals: usize) -> String {
     format!("x {x:.decimals$} y {y:.decimals$} z {z:.decimals$} mm, {}°", angles.join(" "))
 }
 
+fn radius_mm(text: &str) -> Result<f64, String> {
+    let radius_mm = text.parse().ok().filter(|radius_mm: &f64| radius_mm.is_finite() && *radius_mm > 0.0);
+    radius_mm.ok_or_else(|| "expected a radius above 0 mm".to_owned())
+}
+
 fn head(text: &str) -> Result<Head, String> {
     Head::by_id(text).ok_or_else(|| format!("expected one of {}", Head::ALL.map(|head| head.id).join(", ")))
 }
@@ -211,6 +216,7 @@ mod tests {
             ("--head lj-v1", "expected one of lj-v7060"),
             ("--fault mute", "expected a fault (split-frames"),
             ("--port-offset -1", "-1"),
+            ("--radius-mm -3", "expected a radius above 0 mm"),
         ] {
             let refusal = parsed(arguments).expect_err(arguments).to_string();
             assert!(refusal.contains(culprit), "{arguments}: {refusal}");

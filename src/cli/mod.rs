@@ -110,5 +110,11 @@ pub fn usage_error(error: &clap::Error) -> ExitCode {
     let message = said.join(" ");
     let message =
         message.trim_start_matches("error: ").trim_end_matches("For more information, try '--help'.").trim_end();
-    fail(EXIT_WRONG_INPUT, &format_args!("{message} (see `handeye --help`)"))
+    // The usage line names the command that was meant.
+    let usage = text.lines().find_map(|line| line.trim().strip_prefix("Usage: handeye "));
+    let command = usage.and_then(|usage| usage.split_whitespace().next());
+    let command =
+        command.filter(|word| word.chars().all(|c| c.is_ascii_lowercase() || c == '-') && !word.starts_with('-'));
+    let command = command.map(|command| format!("{command} ")).unwrap_or_default();
+    fail(EXIT_WRONG_INPUT, &format_args!("{message} (see `handeye {command}--help`)"))
 }

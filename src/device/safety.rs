@@ -116,6 +116,19 @@ pub enum MotionRefusal {
     /// A target with numbers that are none.
     #[error("the target of the move is no pose: found a number that is not finite; choose another target")]
     NotAPose,
+    /// A search along the laser line sees the same section all the way.
+    #[error(
+        "the search would go {angle_deg:.0}° off the laser plane's normal, needed at most {max_deg:.0}°: it has to go across the laser line. Set its direction to {x:.2}, {y:.2}, {z:.2}, or correct the mounting",
+        x = across[0], y = across[1], z = across[2]
+    )]
+    AlongLine {
+        /// The angle between the travel and the normal of the laser plane, degrees.
+        angle_deg: f64,
+        /// The most, degrees.
+        max_deg: f64,
+        /// The normal, in the frame of the search's direction.
+        across: [f64; 3],
+    },
     /// The controller would refuse.
     #[error("the robot is not ready: found {found}; {remedy}")]
     NotReady {

@@ -80,6 +80,7 @@ impl Workbench {
 
     pub(super) fn put_on_bench(&mut self, document: Document) {
         self.let_go_of_document();
+        self.end_practice();
         self.forget_errors();
         self.conflict = None;
         self.looking.cancel();
@@ -198,6 +199,7 @@ impl Workbench {
 
     pub(super) fn close_document(&mut self) {
         self.let_go_of_document();
+        self.end_practice();
         self.loading.cancel();
         self.solving.cancel();
         self.looking.cancel();

@@ -87,7 +87,7 @@ impl Runner {
                 RoutineEnd::StaleProfiles { trigger_count }
             }
             Ok(Err(Break::Device(error))) => RoutineEnd::Failed { error, robot_stopped: self.stop_robot() },
-            Ok(Err(Break::Stop)) => RoutineEnd::Stopped { robot_stopped: self.robot.stop_and_wait() },
+            Ok(Err(Break::Stop)) => RoutineEnd::Stopped { robot_stopped: self.stop_robot() },
             Err(_) => broken_down(self.stop_robot()),
         };
         self.tell(RoutineEvent::Ended(end));

@@ -19,7 +19,7 @@ pub enum SearchEnd {
     #[error(transparent)]
     NotBegun(#[from] SettingsRefusal),
     /// The first profile holds no arc.
-    #[error("no arc in the first profile: {reason}; bring the laser line onto the ball")]
+    #[error("no arc in the first profile: {reason}")]
     NoArcAtStart {
         /// Why.
         reason: String,

@@ -144,7 +144,9 @@ impl SearchSettings {
             .map_or(0.0, |direction| direction.dot(&(reported.translation.vector - first.translation.vector)))
     }
 
-    fn direction_in_base(&self, first: &Rigid) -> Option<Unit<Vec3>> {
+    /// Where the travel goes from a pose `base_from_flange`, in the base; `None` without a direction.
+    #[must_use]
+    pub fn direction_in_base(&self, first: &Rigid) -> Option<Unit<Vec3>> {
         let direction = self.unit_direction()?;
         Some(match self.frame {
             DirectionFrame::Tool => first.rotation * direction,

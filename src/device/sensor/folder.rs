@@ -23,6 +23,8 @@ const DEVICE: &str = "Watched folder";
 const QUIET: Duration = Duration::from_millis(150);
 /// One that cannot be read gets so long to become readable, for programs that write in several goes.
 const PATIENCE: Duration = Duration::from_millis(1500);
+/// Then it is told for so long, or until a profile comes; after that it is done with.
+const TOLD_FOR: Duration = Duration::from_secs(10);
 /// A folder whose time has not changed holds no new names, once two names of the same time would differ in it: drives
 /// tell times apart to 2 s at worst.
 const COARSEST_TIME: Duration = Duration::from_secs(3);
@@ -232,8 +234,13 @@ impl FolderDriver {
         let Some((name, fresh)) = complete.last() else { return Ok(()) };
         let profile = match read(&self.folder.join(name), self.z_sign) {
             Ok(profile) => Arc::new(profile),
-            Err(_) if now.saturating_duration_since(fresh.since) < PATIENCE => return Ok(()),
-            Err(error) => return Err(error),
+            Err(error) => {
+                let stands_for = now.saturating_duration_since(fresh.since);
+                if stands_for >= PATIENCE + TOLD_FOR {
+                    self.see_all(now);
+                }
+                return if (PATIENCE..PATIENCE + TOLD_FOR).contains(&stands_for) { Err(error) } else { Ok(()) };
+            }
         };
         self.last = Some(Last { name: name.clone(), stamp: fresh.stamp, under_way_at: None });
         self.num_files = self.num_files.wrapping_add(u32::try_from(complete.len()).unwrap_or(u32::MAX));
@@ -259,17 +266,17 @@ fn is_left_alone(name: &OsString) -> bool {
 
 fn read(path: &Path, z_sign: f64) -> Result<Profile, DeviceError> {
     let file_name = || path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    let failed = |error: io::Error| DeviceError::System {
+    // The folder is watched on: what cannot be read is told like a refusal, which stands as long as it holds.
+    let refused = |found: String, remedy: &str| DeviceError::Refused {
         device: DEVICE,
-        what: format!("reading {}", file_name()),
-        reason: error.to_string(),
-    };
-    let unexpected = |found: String| DeviceError::Unexpected {
-        device: DEVICE,
-        request: file_name(),
+        request: format!("the file {}", file_name()),
         found,
-        expected: "one profile: a row a point with x and z in mm".to_owned(),
-        remedy: "let the software save profiles alone into this folder, as text with columns x and z",
+        remedy: remedy.to_owned(),
+    };
+    let failed = |error: io::Error| refused(error.to_string(), "see that it may be read, then save the profile anew");
+    let unexpected = |found: String| {
+        let remedy = "let the software save profiles alone into this folder, as text: a row a point with x and z in mm";
+        refused(format!("found {found}, needed one profile"), remedy)
     };
     let mut bytes = Vec::new();
     // One byte more than allowed tells that there are more.

@@ -160,8 +160,10 @@ impl<D: Duty> Worker<D> {
                     return None;
                 }
                 Next::Stop(count) => {
+                    // Where nothing was sent there was nothing to stop.
+                    let was_moving = self.duty.may_be_moving();
                     let outcome = self.stop(driver);
-                    self.post.note_stopped(count, Some(outcome.is_ok()));
+                    self.post.note_stopped(count, Some(outcome.is_ok() || !was_moving));
                     outcome
                 }
                 Next::Request(request) => match self.stop_what_is_left(driver) {
@@ -209,6 +211,7 @@ impl<D: Duty> Worker<D> {
         loop {
             match self.post.next(retry_at, false) {
                 Next::Over | Next::Nothing => return,
+                Next::Stop(count) if !self.duty.may_be_moving() => self.post.note_stopped(count, Some(true)),
                 Next::Stop(count) => self.post.note_stopped_without_connection(count),
                 Next::Request(request) => D::refuse(request, error.clone()),
             }

@@ -465,6 +465,9 @@ pub fn next_button(label: &str) -> String {
 pub const MOVING: &str = "The robot moves.";
 /// The same.
 pub const SETTLING: &str = "Waiting until the robot stands still and a later profile comes.";
+/// The same where a person or another program saves the profiles.
+pub const SETTLING_BY_FOLDER: &str =
+    "Waiting until the robot stands still and a profile comes: save one into the watched folder now.";
 /// The same.
 pub const THINKING: &str = "Working out the next step.";
 /// The same.

@@ -1,6 +1,6 @@
 //! What the live cell has to say: notices, and the reasons for a proposed pose.
 
-use crate::device::{MotionRefusal, RoutineEnd};
+use crate::device::{MotionRefusal, RobotKind, RoutineEnd, SensorKind};
 use crate::plan::PlannedStation;
 
 use super::plural;
@@ -38,8 +38,8 @@ pub const NO_MOUNTING: &str = "no pose can be proposed yet: say roughly how the 
 /// A rough plan needs to know where the ball is.
 pub const NO_BALL_SEEN: &str =
     "no pose can be proposed yet: bring the laser line onto the ball, so that it is known where it is";
-/// Why a run ended.
-pub const STOPPED: &str = "it was stopped";
+/// A run would end after its first station.
+pub const RUN_NEEDS_MOUNTING: &str = "the run was not begun: after its first station nobody would know where to go. Say roughly how the sensor is mounted on the flange, or capture a few stations by hand first";
 /// Why a run ended.
 pub const LINK_LOST: &str = "the connection to the robot was lost";
 /// Why a run ended.
@@ -53,8 +53,45 @@ pub const NO_PROPOSAL: &str = "there is no proposed pose: ask for one first";
 pub const PRACTICE_NAME: &str = "practice";
 /// The simulated robot.
 pub const PRACTICE_ROBOT: &str = "simulated FANUC LR Mate 200iD";
+
+/// The make of the robots that a driver connects to; `None` where it is any.
+#[must_use]
+pub const fn make_of_robot(kind: RobotKind) -> Option<&'static str> {
+    match kind {
+        RobotKind::FanucMappdk | RobotKind::FanucPage => Some("FANUC"),
+        RobotKind::UniversalRobots => Some("Universal Robots"),
+        RobotKind::Bridge => None,
+    }
+}
+
+/// The profilers that a driver connects to; `None` where they are any.
+#[must_use]
+pub const fn model_of_sensor(kind: SensorKind) -> Option<&'static str> {
+    match kind {
+        SensorKind::KeyenceLjv => Some("Keyence LJ-V7000"),
+        SensorKind::Bridge | SensorKind::Folder => None,
+    }
+}
+
+/// A session holds stations of another robot.
+#[must_use]
+pub fn other_robot(recorded: &str, connected: &str) -> String {
+    format!(
+        "the session's robot is {recorded}, the one that is connected {connected}: their stations make no calibration together. Begin a new session, or correct the robot's name in the session"
+    )
+}
+
+/// A search that is longer than it has to be.
+#[must_use]
+pub fn travel_is_oblique(angle_deg: f64) -> String {
+    format!("The search goes {angle_deg:.0}° off the laser plane's normal: straight across the line it is shorter")
+}
+
 /// The simulated profiler.
-pub const PRACTICE_SENSOR: &str = "simulated Keyence LJ-V7060";
+#[must_use]
+pub fn practice_sensor(head_id: &str) -> String {
+    format!("simulated Keyence {}", head_id.to_uppercase())
+}
 
 /// Why a routine did not do what it was asked; `None` if it did.
 #[must_use]
@@ -72,10 +109,11 @@ pub fn reason_of_end(end: &RoutineEnd) -> Option<String> {
             "the robot did not stand still: it moved by {moved_mm:.3} mm during a profile, again and again. Let it settle longer, or allow more"
         ),
         RoutineEnd::StaleProfiles { trigger_count } => format!(
-            "no profile came that is later than the move: the trigger count stayed at {trigger_count}. See whether the profiler still measures, and how it is triggered"
+            "no profile came that is later than the move: the trigger count stayed at {trigger_count}. See whether the profiler still measures, and how it is triggered; into a watched folder save a profile for each capture"
         ),
         RoutineEnd::Failed { error, robot_stopped: Some(true) } => format!("{error}. No move is under way"),
         RoutineEnd::Failed { error, robot_stopped } => format!("{error}. {}", stop_taken(*robot_stopped)),
+        RoutineEnd::Stopped { robot_stopped: Some(true) } => "stopped".to_owned(),
         RoutineEnd::Stopped { robot_stopped } => format!("stopped on request. {}", stop_taken(*robot_stopped)),
     })
 }
@@ -85,10 +123,26 @@ pub fn reason_of_end(end: &RoutineEnd) -> Option<String> {
 pub fn routine_ended(station: &str, num_captures: usize, end: &RoutineEnd) -> Option<String> {
     let reason = reason_of_end(end)?;
     Some(match num_captures {
-        0 if matches!(end, RoutineEnd::Stopped { robot_stopped: Some(true) }) => return None,
         0 => reason,
-        _ => format!("{station}: {reason}. Its {num_captures} capture{} are kept", plural(num_captures)),
+        1 => format!("{station}: {reason}. Its 1 capture is kept"),
+        _ => format!("{station}: {reason}. Its {num_captures} captures are kept"),
     })
+}
+
+/// A stop that was wanted, and taken.
+#[must_use]
+pub fn stopped(station: &str, num_captures: usize) -> String {
+    match num_captures {
+        0 => "stopped; nothing was captured".to_owned(),
+        1 => format!("stopped; the 1 capture of {station} is kept"),
+        _ => format!("stopped; the {num_captures} captures of {station} are kept"),
+    }
+}
+
+/// A run that somebody stopped.
+#[must_use]
+pub fn run_stopped(num_done: u16, num_stations: u16) -> String {
+    format!("the run was stopped after {num_done} of {num_stations} stations; what was captured is kept")
 }
 
 const fn stop_taken(robot_stopped: Option<bool>) -> &'static str {
@@ -143,7 +197,7 @@ pub fn reason_of_rough(station: &PlannedStation) -> String {
 }
 
 fn orientation(station: &PlannedStation) -> String {
-    format!("tilted {:.0}° towards {:.0}°, turned {:.0}°", station.tilt_deg, station.azimuth_deg, station.spin_deg)
+    format!("tilted {:.0}° towards {:.0}°, spun {:.0}°", station.tilt_deg, station.azimuth_deg, station.spin_deg)
 }
 
 /// A station by its label.

@@ -195,7 +195,9 @@ fn next_while_running(view: &View<'_>) -> Option<Next> {
             return Some(Next::command(words::now::RESUME, words::RESUME, CellCommand::ResumeRun));
         }
     }
-    Some(Next::wait(activity(cell.activity)?))
+    let waits_for_file = cell.activity == Activity::Settling && cell.watched_folder.is_some();
+    let told = if waits_for_file { Some(words::SETTLING_BY_FOLDER) } else { activity(cell.activity) };
+    Some(Next::wait(told?))
 }
 
 const fn activity(activity: Activity) -> Option<&'static str> {

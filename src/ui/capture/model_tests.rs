@@ -335,3 +335,15 @@ fn setups_need_an_address_or_a_folder() {
     // A link that was let go does not count as connected, whatever it was connected to.
     assert_eq!(deed(&cell, None, &CellMemory::default()), command(CellCommand::Practise));
 }
+
+#[test]
+fn a_capture_from_a_watched_folder_asks_for_a_file() {
+    let (memory, empty) = (with_addresses(), empty_session());
+    for (watched_folder, expected) in
+        [(None, words::SETTLING), (Some(std::path::PathBuf::from("scans")), words::SETTLING_BY_FOLDER)]
+    {
+        let cell = CellView { activity: Activity::Settling, watched_folder, ..connected(Readiness::Ready) };
+        let next = next(&View { cell: &cell, session: Some(&empty), has_solution: false }, &memory);
+        assert_eq!(next.sentence, expected);
+    }
+}

@@ -4,15 +4,16 @@ use std::collections::HashSet;
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::app::cell::{Activity, StationRoutine};
+use crate::app::cell::{Activity, CellView, StationRoutine};
 use crate::calibrate::SideChoice;
 use crate::device::{
-    DeviceError, LinkState, Measurement, Routine, RoutineEnd, RoutineEvent, SearchEnd, SearchReport, StepCapture, Task,
+    DeviceError, LinkState, Measurement, RobotKind, Routine, RoutineEnd, RoutineEvent, SearchEnd, SearchReport,
+    StepCapture, Task,
 };
 use crate::geometry::{Base, Flange, Profile, Transform};
 use crate::session::edit::{CellValue, free_label};
 use crate::session::model::UnknownFields;
-use crate::session::{Capture, Edit, Place, Reading, Session, Station, new_gesture};
+use crate::session::{Capture, Edit, Place, Reading, Session, SetupField, Station, new_gesture};
 use crate::text::cell as words;
 use crate::text::edits::capture_label;
 
@@ -25,6 +26,8 @@ pub(super) struct Measuring {
     pub routine: Routine,
     /// The document that its captures belong to; `None` once that has left the bench.
     document_id: Option<u64>,
+    /// Whether that has left the bench.
+    has_left: bool,
     /// All captures of the station are one step of undo.
     gesture: u64,
     label: String,
@@ -43,6 +46,12 @@ impl Measuring {
     /// Nothing more is taken from it.
     pub fn give_up(&mut self) {
         self.document_id = None;
+    }
+
+    /// The document leaves the bench, and how this ends says nothing of the next one.
+    pub fn leave_document(&mut self) {
+        self.give_up();
+        self.has_left = true;
     }
 
     /// The station with the most of what was captured.
@@ -76,9 +85,19 @@ impl Workbench {
 
     fn measure_by_hand(&mut self, routine: StationRoutine) {
         if self.cell.run.is_some() {
-            self.notify(NoticeKind::Error, words::BUSY.to_owned());
+            self.notify_of_cell(NoticeKind::Error, words::BUSY.to_owned());
         } else if let Err(reason) = self.measure_station(None, routine) {
-            self.notify(NoticeKind::Error, reason);
+            self.notify_of_cell(NoticeKind::Error, reason);
+        } else if routine == StationRoutine::LargestArc {
+            self.remark_oblique_travel();
+        }
+    }
+
+    /// A search from here that is longer than it has to be.
+    pub(super) fn remark_oblique_travel(&mut self) {
+        let Some(at) = self.cell.view.robot.latest.as_ref().map(|report| report.base_from_flange) else { return };
+        if let Ok(Some(angle_deg)) = self.check_travel(&at, &self.cell.view.settings.search) {
+            self.notify_of_cell(NoticeKind::Done, words::travel_is_oblique(angle_deg));
         }
     }
 
@@ -99,6 +118,12 @@ impl Workbench {
         need_ready(robot.client().link_state(now), words::NO_ROBOT)?;
         need_ready(sensor.client().link_state(now), words::NO_SENSOR)?;
         let settings = &self.cell.view.settings;
+        let latest = self.cell.view.robot.latest.as_ref();
+        if let (StationRoutine::LargestArc, Some(at)) =
+            (routine, go_to.or(latest.map(|report| report.base_from_flange)))
+        {
+            self.check_travel(&at, &settings.search).map_err(|refusal| refusal.to_string())?;
+        }
         let task = Task {
             go_to,
             measurement: Some(match routine {
@@ -116,6 +141,7 @@ impl Workbench {
         self.cell.measuring = Some(Measuring {
             routine: Routine::start(task, robot, sensor, self.wake.clone()),
             document_id: Some(document.id),
+            has_left: false,
             gesture: new_gesture(),
             label,
             go_to,
@@ -126,6 +152,10 @@ impl Workbench {
         });
         self.end_replay();
         self.forget_proposal();
+        if self.cell.run.is_none() {
+            // One station by itself: the progress of an earlier run is not its own.
+            self.cell.view.run = None;
+        }
         self.cell.view.last_end = None;
         self.cell.view.activity = if go_to.is_some() { Activity::Moving } else { Activity::Settling };
         Ok(())
@@ -188,7 +218,10 @@ impl Workbench {
                 captures: vec![capture],
                 unknown: UnknownFields::new(),
             };
-            Edit::InsertStations { at: document.session.stations.len(), stations: vec![station] }
+            let insert = Edit::InsertStations { at: document.session.stations.len(), stations: vec![station] };
+            let mut edits = self.cell.view.what_is_connected(&document.session);
+            edits.push(insert);
+            Edit::Several(edits)
         } else {
             // A station that is gone was taken back: that is told elsewhere.
             let Some(station_idx) = measuring.station_idx(&document.session) else { return };
@@ -201,6 +234,22 @@ impl Workbench {
             measuring.first_pose.get_or_insert(captured.base_from_flange);
             measuring.profiles.push(profile);
         }
+        self.remark_other_robot();
+    }
+
+    /// Stations of two robots make no calibration: that is said once a session.
+    fn remark_other_robot(&mut self) {
+        let (Some(document), Some(setup)) = (&self.document, &self.cell.view.robot.setup) else { return };
+        let (recorded, connected) = (make_of(&document.session.robot.model), words::make_of_robot(setup.kind));
+        if self.cell.practice.is_some() || self.cell.remarked_robot_of == Some(document.id) {
+            return;
+        }
+        if let (Some(recorded), Some(connected)) = (recorded, connected)
+            && recorded != connected
+        {
+            self.cell.remarked_robot_of = Some(document.id);
+            self.notify_of_cell(NoticeKind::Error, words::other_robot(recorded, connected));
+        }
     }
 
     /// Undo takes a station back, or a part of it, while it is being measured: there is no sense in going on.
@@ -210,7 +259,7 @@ impl Workbench {
         if is_taken_back {
             measuring.give_up();
             self.stop_cell();
-            self.notify(NoticeKind::Error, words::STATION_TAKEN_BACK.to_owned());
+            self.notify_of_cell(NoticeKind::Error, words::STATION_TAKEN_BACK.to_owned());
         }
         is_taken_back
     }
@@ -218,7 +267,9 @@ impl Workbench {
     fn end_routine(&mut self, end: &RoutineEnd) {
         let Some(measuring) = self.cell.measuring.take() else { return };
         self.cell.view.activity = Activity::Idle;
-        self.cell.view.last_end = Some(end.clone());
+        if !measuring.has_left || may_still_move(end) {
+            self.cell.view.last_end = Some(end.clone());
+        }
         if !measuring.has_searched {
             // That of the station before was shown on the way; it is not this one's.
             self.cell.view.search = None;
@@ -229,8 +280,13 @@ impl Workbench {
             return;
         }
         let num_captures = if measuring.document_id.is_some() { measuring.profiles.len() } else { 0 };
-        if let Some(message) = words::routine_ended(&words::station(&measuring.label), num_captures, end) {
-            self.notify(NoticeKind::Error, message);
+        if let RoutineEnd::Stopped { robot_stopped: Some(true) } = end {
+            // The line of its run says so already.
+            if self.cell.view.run.is_none() && !measuring.has_left {
+                self.notify_of_stop(words::stopped(&words::station(&measuring.label), num_captures));
+            }
+        } else if let Some(message) = words::routine_ended(&words::station(&measuring.label), num_captures, end) {
+            self.notify_of_cell(NoticeKind::Error, message);
         }
         if let RoutineEnd::Searched(SearchEnd::Found { peak_mm, peak_std_mm }) = end {
             self.note_peak(&measuring, *peak_mm, *peak_std_mm);
@@ -264,6 +320,41 @@ impl Workbench {
         let label = capture_label(&words::station(&measuring.label));
         self.edit_as(&edit, Some(measuring.gesture), label);
     }
+}
+
+impl CellView {
+    /// What a session does not say yet of the devices, as edits.
+    fn what_is_connected(&self, session: &Session) -> Vec<Edit> {
+        let is_open = |model: &str| model.trim().is_empty();
+        let robot = self.robot.setup.as_ref().filter(|_| is_open(&session.robot.model));
+        let robot = robot.and_then(|setup| words::make_of_robot(setup.kind));
+        let sensor = self.sensor.setup.as_ref().filter(|_| is_open(&session.sensor.model));
+        let sensor = sensor.and_then(|setup| words::model_of_sensor(setup.kind));
+        let robot = robot.map(|make| SetupField::RobotModel(make.to_owned()));
+        let sensor = sensor.map(|model| SetupField::SensorModel(model.to_owned()));
+        robot.into_iter().chain(sensor).map(Edit::Setup).collect()
+    }
+}
+
+/// The make that the name of a robot tells, among those that can be connected.
+fn make_of(model: &str) -> Option<&'static str> {
+    let model = model.to_lowercase();
+    let is_ur =
+        model.strip_prefix("ur").is_some_and(|rest| rest.trim_start().starts_with(|c: char| c.is_ascii_digit()));
+    let kind = match () {
+        () if model.contains("fanuc") => RobotKind::FanucMappdk,
+        () if model.contains("universal robots") || is_ur => RobotKind::UniversalRobots,
+        () => return None,
+    };
+    words::make_of_robot(kind)
+}
+
+/// Whether nobody knows that the robot stands.
+fn may_still_move(end: &RoutineEnd) -> bool {
+    matches!(
+        end,
+        RoutineEnd::Failed { robot_stopped, .. } | RoutineEnd::Stopped { robot_stopped } if *robot_stopped != Some(true)
+    )
 }
 
 /// The pose that the robot would not go to. A refusal of something else than the target may have come when it was on the

@@ -119,7 +119,7 @@ impl Workbench {
         }
         self.cell.armed = None;
         self.cell.view.is_armed = false;
-        self.notify(NoticeKind::Error, words::DISARMED.to_owned());
+        self.notify_of_cell(NoticeKind::Error, words::DISARMED.to_owned());
         match &self.cell.measuring {
             // It is bound to the connection that is gone, and ends by that, in its name; a pause must not keep it from that.
             Some(measuring) => measuring.routine.control().pause(false),
@@ -135,11 +135,11 @@ impl Workbench {
             client.latest().filter(|_| is_ready).map(|report| (report, client.num_connections()))
         });
         let Some((report, connection)) = report else {
-            self.notify(NoticeKind::Error, words::NO_POSE_TO_ARM_AT.to_owned());
+            self.notify_of_cell(NoticeKind::Error, words::NO_POSE_TO_ARM_AT.to_owned());
             return;
         };
         if let Err(refusal) = check_readiness(&report.readiness) {
-            self.notify(NoticeKind::Error, refusal.to_string());
+            self.notify_of_cell(NoticeKind::Error, refusal.to_string());
             return;
         }
         self.cell.armed = Some(Armed { base_from_flange: report.base_from_flange, connection });

@@ -7,6 +7,7 @@ mod practice;
 mod proposals;
 mod replay;
 mod run;
+mod travel;
 
 use std::time::Instant;
 
@@ -35,6 +36,12 @@ pub(super) struct LiveCell {
     run: Option<Run>,
     practice: Option<Practice>,
     replay: Option<Replay>,
+    /// What was told of the cell.
+    notice_ids: Vec<u64>,
+    /// The line of the last stop that was wanted.
+    stop_notice_id: Option<u64>,
+    /// The document of which it was said that its robot is another one.
+    remarked_robot_of: Option<u64>,
 }
 
 impl Workbench {
@@ -89,7 +96,7 @@ impl Workbench {
             let in_use = self.cell.view.settings;
             let (limits, search, settle) = (in_use.limits, in_use.search, in_use.settle);
             if (settings.limits, settings.search, settings.settle) != (limits, search, settle) {
-                self.notify(NoticeKind::Error, words::SETTINGS_IN_USE.to_owned());
+                self.notify_of_cell(NoticeKind::Error, words::SETTINGS_IN_USE.to_owned());
             }
             settings = CellSettings { limits, search, settle, ..settings };
         }
@@ -125,15 +132,38 @@ impl Workbench {
         self.poll_routine();
         if self.cell.measuring.is_some() || self.cell.run.is_some() {
             self.stop_cell();
-            self.notify(NoticeKind::Error, words::DOCUMENT_GONE.to_owned());
+            self.notify_of_stop(words::DOCUMENT_GONE.to_owned());
         }
         if let Some(measuring) = &mut self.cell.measuring {
-            measuring.give_up();
+            measuring.leave_document();
         }
+        // How things went is told of the document that they went into.
+        let view = &mut self.cell.view;
+        (view.last_end, view.search, view.run, view.repeat_std_mm) = (None, None, None, None);
         self.forget_proposal();
         self.cell.proposing = Proposing::default();
         self.end_replay();
         // Whoever armed motion meant the session that was open.
         self.disarm();
+    }
+
+    fn notify_of_cell(&mut self, kind: NoticeKind, message: String) {
+        self.notify(kind, message);
+        self.cell.notice_ids.push(self.last_notice_id);
+    }
+
+    /// A stop that somebody wanted is no error, and of several the last one is enough.
+    fn notify_of_stop(&mut self, message: String) {
+        if let Some(id) = self.cell.stop_notice_id {
+            self.notices.retain(|notice| notice.id != id);
+        }
+        self.notify_of_cell(NoticeKind::Done, message);
+        self.cell.stop_notice_id = Some(self.last_notice_id);
+    }
+
+    /// Something begins anew: what was told of the cell before is history.
+    fn forget_notices_of_cell(&mut self) {
+        let ids = std::mem::take(&mut self.cell.notice_ids);
+        self.notices.retain(|notice| !ids.contains(&notice.id));
     }
 }

@@ -1,6 +1,6 @@
 //! Practice on the simulated cell: a cell that needs no devices, with a session for its ball.
 
-use crate::app::cell::RoughMounting;
+use crate::app::cell::{Activity, RoughMounting};
 use crate::device::sim::{SimCell, SimOptions, SimTruth};
 use crate::geometry::{Rigid, Transform};
 use crate::session::model::UnknownFields;
@@ -27,11 +27,11 @@ impl Workbench {
         let cell = match SimCell::start(options) {
             Ok(cell) => cell,
             Err(error) => {
-                self.notify(NoticeKind::Error, error.to_string());
+                self.notify_of_cell(NoticeKind::Error, error.to_string());
                 return;
             }
         };
-        self.open_session(session_for(&cell.truth), None);
+        self.open_session(session_for(&cell.truth, options), None);
         let own_mounting = self.cell.view.settings.mounting;
         self.cell.view.settings.mounting = Some(mounting(&cell.truth.rough_flange_from_sensor));
         self.connect_robot(cell.robot_setup.clone());
@@ -40,21 +40,26 @@ impl Workbench {
         self.cell.view.is_practice = true;
     }
 
-    /// Ends the simulated cell, if there is one; its session stays.
-    pub(super) fn end_practice(&mut self) {
+    /// Ends the simulated cell, if there is one; its session stays if that is on the bench. The robot is stopped first.
+    pub(in crate::app::workbench) fn end_practice(&mut self) {
         let Some(practice) = self.cell.practice.take() else { return };
+        self.poll_routine();
         self.disconnect_robot();
         self.disconnect_sensor();
+        // Of a robot that is no more nobody needs to know whether it stands.
+        self.cell.measuring = None;
+        self.cell.view.activity = Activity::Idle;
+        self.cell.view.last_end = None;
         self.cell.view.settings.mounting = practice.own_mounting;
         self.cell.view.is_practice = false;
     }
 }
 
-fn session_for(truth: &SimTruth) -> Session {
+fn session_for(truth: &SimTruth, options: &SimOptions) -> Session {
     let mut session = Session::new(Target::ball(truth.radius_mm));
     words::PRACTICE_NAME.clone_into(&mut session.name);
     words::PRACTICE_ROBOT.clone_into(&mut session.robot.model);
-    words::PRACTICE_SENSOR.clone_into(&mut session.sensor.model);
+    session.sensor.model = words::practice_sensor(options.head.id);
     let [position_std_mm, orientation_std_deg] = truth.pose_std_mm_deg;
     // A noise of nothing is no noise to state.
     let stated = |std: f64| (std > 0.0).then_some(std);

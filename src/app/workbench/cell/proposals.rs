@@ -77,7 +77,7 @@ impl Proposing {
 impl Workbench {
     pub(super) fn want_proposal(&mut self) {
         if self.cell.measuring.is_some() {
-            self.notify(NoticeKind::Error, words::BUSY.to_owned());
+            self.notify_of_cell(NoticeKind::Error, words::BUSY.to_owned());
             return;
         }
         self.cell.view.proposal = None;
@@ -144,11 +144,17 @@ impl Workbench {
         if self.cell.run.is_some() {
             self.end_run(Some(reason));
         } else {
-            self.notify(NoticeKind::Error, reason);
+            self.notify_of_cell(NoticeKind::Error, reason);
         }
     }
 
     fn proposal_of(&self, station: PlannedStation, reason: String) -> Proposal {
+        let search = self.search_at_stations();
+        let oblique = search.and_then(|search| self.check_travel(&station.base_from_flange, &search).ok().flatten());
+        let reason = match oblique {
+            Some(angle_deg) => format!("{reason}. {}", words::travel_is_oblique(angle_deg)),
+            None => reason,
+        };
         let mut proposal = Proposal { station, reason, distance_mm: 0.0, turn_deg: 0.0, refusal: None };
         self.check_against_robot(&mut proposal);
         proposal
@@ -161,7 +167,11 @@ impl Workbench {
         proposal.turn_deg = from.rotation().angle_to(&to.rotation()).to_degrees();
         proposal.refusal = match self.arming() {
             None => Some(MotionRefusal::NotArmed),
-            Some(arming) => check_station(&arming, report, to, self.search_at_stations().as_ref()).err(),
+            Some(arming) => {
+                let search = self.search_at_stations();
+                let across = search.as_ref().map_or(Ok(None), |search| self.check_travel(to, search));
+                across.and_then(|_| check_station(&arming, report, to, search.as_ref())).err()
+            }
         };
     }
 
@@ -181,13 +191,13 @@ impl Workbench {
 
     pub(super) fn accept_proposal(&mut self) {
         let Some(proposal) = &self.cell.view.proposal else {
-            self.notify(NoticeKind::Error, words::NO_PROPOSAL.to_owned());
+            self.notify_of_cell(NoticeKind::Error, words::NO_PROPOSAL.to_owned());
             return;
         };
         let target = proposal.station.base_from_flange;
         if let Some(refusal) = &proposal.refusal {
             let reason = refusal.to_string();
-            self.notify(NoticeKind::Error, reason);
+            self.notify_of_cell(NoticeKind::Error, reason);
             return;
         }
         let routine = self.cell.view.settings.routine;
@@ -304,7 +314,7 @@ struct Seen<'a> {
     peak: Option<&'a FoundPeak>,
 }
 
-fn rigid(mounting: &RoughMounting) -> Rigid {
+pub(super) fn rigid(mounting: &RoughMounting) -> Rigid {
     let [w, i, j, k] = mounting.quaternion_wxyz;
     let rotation = nalgebra::UnitQuaternion::new_normalize(nalgebra::Quaternion::new(w, i, j, k));
     Rigid::from_parts(Vec3::from(mounting.translation_mm).into(), rotation)

@@ -68,7 +68,7 @@ impl Drop for Ticker {
 impl Workbench {
     pub(super) fn start_replay(&mut self) {
         if self.cell.measuring.is_some() || self.cell.run.is_some() {
-            self.notify(NoticeKind::Error, words::BUSY.to_owned());
+            self.notify_of_cell(NoticeKind::Error, words::BUSY.to_owned());
             return;
         }
         let has_profile = |capture: &Capture| matches!(capture.reading, Reading::Profile(_));
@@ -77,7 +77,7 @@ impl Workbench {
             .as_ref()
             .filter(|document| document.session.stations.iter().flat_map(|station| &station.captures).any(has_profile));
         let Some(document) = document else {
-            self.notify(NoticeKind::Error, words::NOTHING_TO_REPLAY.to_owned());
+            self.notify_of_cell(NoticeKind::Error, words::NOTHING_TO_REPLAY.to_owned());
             return;
         };
         self.cell.view.search = None;

@@ -2,7 +2,8 @@
 
 use std::time::Instant;
 
-use crate::app::cell::{Activity, RunView};
+use crate::app::cell::{Activity, RunView, StationRoutine};
+use crate::calibrate::best_available;
 use crate::device::{DeviceError, MotionRefusal, RoutineEnd, SearchEnd};
 use crate::geometry::{Base, Flange, Transform};
 use crate::text::cell as words;
@@ -18,6 +19,10 @@ const MOST_REFUSED_IN_A_ROW: u32 = 10;
 /// What a robot that stands still may seem to move between two reports: a few times the noise of coarse ones.
 const STANDS_WITHIN_MM: f64 = 0.2;
 const STANDS_WITHIN_DEG: f64 = 0.1;
+
+/// Nearer than this to a capture the robot stands at its station.
+const SAME_STATION_MM: f64 = 0.5;
+const SAME_STATION_DEG: f64 = 0.5;
 
 /// A pose that the robot would not go to.
 #[derive(Clone, Debug)]
@@ -72,16 +77,21 @@ impl Run {
 impl Workbench {
     pub(super) fn start_run(&mut self, num_stations: u16) {
         if self.cell.run.is_some() || self.cell.measuring.is_some() {
-            self.notify(NoticeKind::Error, words::BUSY.to_owned());
+            self.notify_of_cell(NoticeKind::Error, words::BUSY.to_owned());
             return;
         }
         if self.cell.armed.is_none() {
-            self.notify(NoticeKind::Error, MotionRefusal::NotArmed.to_string());
+            self.notify_of_cell(NoticeKind::Error, MotionRefusal::NotArmed.to_string());
             return;
         }
         if num_stations == 0 {
             return;
         }
+        if num_stations > 1 && !self.can_propose_after_one() {
+            self.notify_of_cell(NoticeKind::Error, words::RUN_NEEDS_MOUNTING.to_owned());
+            return;
+        }
+        self.forget_notices_of_cell();
         let mut run = Run {
             num_stations,
             num_done: 0,
@@ -91,15 +101,36 @@ impl Workbench {
             stage: Stage::Between,
         };
         // Where the robot stands there may be a ball in view already.
-        if self.cell.view.live.as_ref().is_some_and(|live| live.arc.is_ok()) {
+        if self.cell.view.live.as_ref().is_some_and(|live| live.arc.is_ok()) && !self.stands_at_a_station() {
             if let Err(reason) = self.measure_station(None, self.cell.view.settings.routine) {
-                self.notify(NoticeKind::Error, reason);
+                self.notify_of_cell(NoticeKind::Error, reason);
                 return;
             }
             run.stage = Stage::Measuring;
+            if self.cell.view.settings.routine == StationRoutine::LargestArc {
+                self.remark_oblique_travel();
+            }
         }
         self.cell.run = Some(run);
         self.show_run();
+    }
+
+    /// Whether more than the station where the robot stands can be found.
+    fn can_propose_after_one(&self) -> bool {
+        let is_solved = self.results().is_some_and(|results| best_available(&results.methods).is_some());
+        is_solved || self.cell.view.settings.mounting.is_some()
+    }
+
+    /// Whether the session has a station where the robot stands: another one there would tell next to nothing.
+    fn stands_at_a_station(&self) -> bool {
+        let (Some(document), Some(report)) = (&self.document, &self.cell.view.robot.latest) else { return false };
+        let here = &report.base_from_flange;
+        let mut captures = document.session.stations.iter().flat_map(|station| &station.captures);
+        captures.any(|capture| {
+            let there = &capture.base_from_flange;
+            (there.translation_mm() - here.translation_mm()).norm() <= SAME_STATION_MM
+                && there.rotation().angle_to(&here.rotation()).to_degrees() <= SAME_STATION_DEG
+        })
     }
 
     /// A station's routine has ended: the run counts it and goes on, unless nothing can go on.
@@ -117,13 +148,13 @@ impl Workbench {
         let is_complete = num_done >= run.num_stations;
         self.show_run();
         match end {
-            RoutineEnd::Stopped { .. } => self.end_run(Some(words::STOPPED.to_owned())),
+            RoutineEnd::Stopped { .. } => self.end_run(None),
             RoutineEnd::NotAllowed(refusal) => self.end_run(Some(refusal.to_string())),
             // What happened is in the notice before.
             _ if !is_of_this_pose(end) => self.end_by_trouble(),
             _ if is_complete => {
                 self.put_run_away();
-                self.notify(NoticeKind::Done, words::run_done(num_done, num_failed));
+                self.notify_of_cell(NoticeKind::Done, words::run_done(num_done, num_failed));
             }
             _ if num_in_a_row >= MOST_FAILED_IN_A_ROW => {
                 self.end_run(Some(words::failed_in_a_row(num_in_a_row)));
@@ -163,7 +194,7 @@ impl Workbench {
         if latest.is_moving != Some(true) && moved_mm <= STANDS_WITHIN_MM && turned_deg <= STANDS_WITHIN_DEG {
             self.set_stage(Stage::Between);
         } else {
-            self.notify(NoticeKind::Error, refused.reason.clone());
+            self.notify_of_cell(NoticeKind::Error, refused.reason.clone());
             self.end_by_trouble();
         }
         true
@@ -241,8 +272,10 @@ impl Workbench {
         };
         self.forget_proposal();
         self.put_run_away();
-        let reason = reason.unwrap_or_else(|| words::STOPPED.to_owned());
-        self.notify(NoticeKind::Error, words::run_ended(num_done, num_stations, &reason));
+        match reason {
+            Some(reason) => self.notify_of_cell(NoticeKind::Error, words::run_ended(num_done, num_stations, &reason)),
+            None => self.notify_of_stop(words::run_stopped(num_done, num_stations)),
+        }
     }
 
     /// What remains to be seen of a run waits for nothing.
