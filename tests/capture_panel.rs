@@ -387,13 +387,44 @@ fn settings_are_set_as_a_whole() {
 fn the_mounting_is_asked_for_once_it_is_needed() {
     let unmounted = CellView { settings: CellSettings::default(), ..armed() };
     let mut harness = Bench { session: Some(sample()), ..Bench::new(unmounted) }.harness();
-    assert!(harness.query_by_label(setting_words::MOUNTING_GIVEN).is_none(), "folded away");
+    assert!(harness.query_by_label(setting_words::USE_MOUNTING).is_none(), "folded away");
     harness.get_by_label(&words::next_button(words::SET_MOUNTING)).click();
     harness.run_steps(4);
-    harness.get_by_label(setting_words::MOUNTING_GIVEN).click();
+    harness.get_by_label(setting_words::USE_MOUNTING).click();
+    harness.run_steps(2);
+    assert_eq!(harness.state().commands, [], "nothing is given that was not typed");
+    for (name, text) in [("x", "20"), ("y", "-10"), ("z", "250")] {
+        let name = setting_words::mounting_number(name);
+        harness.get_by_role_and_label(egui::accesskit::Role::TextInput, &name).focus();
+        harness.run_steps(2);
+        harness.event(egui::Event::Text(text.to_owned()));
+        harness.run_steps(2);
+    }
+    harness.get_by_label(setting_words::USE_MOUNTING).click();
     harness.run_steps(1);
     let Some(Command::Cell(command)) = harness.state().commands.first() else { panic!("settings") };
-    assert!(matches!(command.as_ref(), CellCommand::SetSettings(settings) if settings.mounting.is_some()));
+    let CellCommand::SetSettings(settings) = command.as_ref() else { panic!("{command:?}") };
+    assert_eq!(settings.mounting.expect("typed").translation_mm, [20.0, -10.0, 250.0]);
+}
+
+#[test]
+fn a_number_is_taken_when_it_is_entered() {
+    let mut harness = Bench::new(armed()).harness();
+    harness.get_by_label(setting_words::SEARCH).click();
+    harness.run_steps(4);
+    harness.get_by_role_and_label(egui::accesskit::Role::SpinButton, setting_words::MAX_TRAVEL).focus();
+    harness.run_steps(2);
+    // A travel of 1 mm would be less than two steps.
+    for digit in ["1", "2"] {
+        harness.event(egui::Event::Text(digit.to_owned()));
+        harness.run_steps(2);
+        assert_eq!(harness.state().commands, [], "still being typed");
+    }
+    harness.key_press(Key::Enter);
+    harness.run_steps(1);
+    let Some(Command::Cell(command)) = harness.state().commands.first() else { panic!("settings") };
+    let CellCommand::SetSettings(settings) = command.as_ref() else { panic!("{command:?}") };
+    assert!((settings.search.max_travel_mm - 12.0).abs() < 1e-9, "{settings:?}");
 }
 
 #[test]
@@ -568,6 +599,30 @@ fn space_and_escape_stop_the_robot_from_every_step() {
         wait_until(&mut harness, "stopped", |window| !view(window).is_busy());
         assert!(matches!(view(harness.state()).last_end, Some(RoutineEnd::Stopped { .. })));
     }
+}
+
+#[test]
+fn the_stop_stands_above_every_question() {
+    let mut harness = practising();
+    let workbench = harness.state_mut().shell_mut().workbench_mut();
+    // Something to be saved, and a search that is at it for as long as the question needs.
+    let edit = session::Edit::Setup(session::SetupField::Notes("unsaved".to_owned()));
+    workbench.apply(Command::Edit { edit, gesture: None });
+    let mut settings = workbench.cell().settings;
+    settings.settle.settle_ms = 5_000;
+    workbench.apply(Command::Cell(Box::new(CellCommand::SetSettings(Box::new(settings)))));
+    harness.run_steps(2);
+    click(&mut harness, words::ARM);
+    click(&mut harness, words::FIND);
+    harness.state_mut().shell_mut().request(Command::CloseDocument);
+    harness.run_steps(3);
+    harness.get_by_label(words::STILL_AT_WORK);
+    harness.get_by_label(shell_words::DISCARD);
+    click(&mut harness, words::STOP_ROBOT);
+    wait_until(&mut harness, "stopped", |window| !view(window).is_busy());
+    assert!(matches!(view(harness.state()).last_end, Some(RoutineEnd::Stopped { .. })));
+    harness.get_by_label(shell_words::DISCARD);
+    assert!(harness.query_by_label(words::STOP_ROBOT).is_none(), "nothing is left to be stopped");
 }
 
 #[test]

@@ -132,6 +132,9 @@ fn capture_mark(cell: &CellView) -> Mark {
         Mark::Bad("✖".to_owned())
     } else if is_running(cell) {
         Mark::Look("▶".to_owned())
+    } else if cell.is_armed {
+        // In a word, as it is seen in every step and after every run.
+        Mark::Look(capture_words::ARMED_MARK.to_owned())
     } else if states.iter().all(|state| **state == LinkState::Ready) {
         Mark::Fine("✔".to_owned())
     } else {

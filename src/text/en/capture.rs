@@ -420,6 +420,14 @@ pub fn limits(speed_mm_s: &str, move_mm: &str) -> String {
 pub const STOP: &str = "Stop";
 /// The same in other steps.
 pub const STOP_ROBOT: &str = "Stop the robot";
+/// Button at a broken connection.
+pub const RETRY: &str = "Retry now";
+/// Its name.
+pub const RETRY_ROBOT: &str = "Connect the robot again now";
+/// Its name.
+pub const RETRY_PROFILER: &str = "Connect the profiler again now";
+/// At the step in the rail, while the robot may be moved.
+pub const ARMED_MARK: &str = "armed";
 /// Beside it, above a question.
 pub const STILL_AT_WORK: &str = "The robot is at work behind this question, and goes on.";
 /// On hover.
@@ -541,6 +549,8 @@ pub const CAPTURED: &str = "Captured.";
 pub fn repeat_noise(std_um: &str) -> String {
     format!("Point noise by the repeats: {std_um} µm")
 }
+/// What is shown came before the connection was lost.
+pub const LAST_PROFILE: &str = "last profile";
 /// What is shown is of the station before.
 pub const LAST_STATION: &str = "last station";
 

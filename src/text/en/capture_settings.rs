@@ -62,7 +62,7 @@ pub const SEARCH_SPEED: &str = "Speed of a step";
 /// Checkbox.
 pub const WORKSPACE: &str = "Workspace box of the flange";
 /// On hover.
-pub const WORKSPACE_HINT: &str = "No move ends outside of it, in the robot's base";
+pub const WORKSPACE_HINT: &str = "No move ends outside of it, in the robot's base. Without it: the longest move to either side of the pose at arming";
 /// Names of its sides.
 pub const SIDES: [[&str; 2]; 3] = [["x from", "x to"], ["y from", "y to"], ["z from", "z to"]];
 
@@ -79,8 +79,16 @@ pub const RETRIES: &str = "Tries again";
 
 /// Why the mounting is asked for.
 pub const MOUNTING_WHY: &str = "From a drawing or with a ruler, to about 10° and 20 mm: where the sensor is on the flange. Needed to propose stations until a first solution knows better.";
-/// Checkbox.
-pub const MOUNTING_GIVEN: &str = "Mounting is given";
+/// Of what the numbers are.
+pub const MOUNTING_ORIGIN: &str = "x, y and z say where the profile's x = 0, z = 0 is in the flange: often in the middle of the measuring range, in front of the head, not at it.";
+/// In an empty field.
+pub const MILLIMETRES: &str = "mm";
+/// Button.
+pub const USE_MOUNTING: &str = "Use this mounting";
+/// While it cannot be pressed.
+pub const MOUNTING_MISSING: &str = "Type x, y and z first";
+/// Button.
+pub const FORGET_MOUNTING: &str = "Forget the mounting";
 /// Field.
 pub const LOOKS_ALONG: &str = "Sensor looks along";
 /// Field.
@@ -107,8 +115,10 @@ pub fn search_summary(direction: &str, step_mm: &str, max_travel_mm: &str) -> St
 }
 /// The limits in one line.
 #[must_use]
-pub fn limits_summary(speed_mm_s: &str, has_box: bool) -> String {
-    format!("≤ {speed_mm_s} mm/s, {}", if has_box { "box" } else { "no box" })
+pub fn limits_summary(speed_mm_s: &str, max_move_mm: &str, has_box: bool) -> String {
+    // Without a box of its own it is one about the pose at arming.
+    let place = if has_box { "own box".to_owned() } else { format!("±{max_move_mm} mm") };
+    format!("≤ {speed_mm_s} mm/s, {place}")
 }
 /// The captures in one line.
 #[must_use]

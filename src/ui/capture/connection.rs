@@ -73,6 +73,12 @@ fn robot(ui: &mut Ui, desk: &mut Desk<'_>) {
         if !is_off && !is_practice && small_button(ui, words::DISCONNECT, words::DISCONNECT_ROBOT).clicked() {
             command = Some(CellCommand::DisconnectRobot);
         }
+        let setup = cell.robot.setup.as_ref().filter(|_| shape == model::Lamp::Bad && !is_practice);
+        if let Some(setup) = setup
+            && small_button(ui, words::RETRY, words::RETRY_ROBOT).clicked()
+        {
+            command = Some(CellCommand::ConnectRobot(setup.clone()));
+        }
         lamp(ui, shape, word, words::ROBOT);
     };
     card(ui, words::ROBOT, right, |ui| {
@@ -122,6 +128,9 @@ fn robot_state(ui: &mut Ui, desk: &Desk<'_>) {
         }
     }
     let Some(report) = &cell.robot.latest else { return };
+    if cell.replay.is_none() && cell.robot.state != LinkState::Ready {
+        ui.multiply_opacity(theme::PAST_OPACITY);
+    }
     ui.add_space(4.0);
     pose(ui, &model::pose_rows(&desk.view.notation(), &report.base_from_flange, report.resolution_mm));
     if cell.replay.is_some() {
@@ -165,6 +174,12 @@ fn profiler(ui: &mut Ui, desk: &mut Desk<'_>) {
         if !is_off && !is_practice && small_button(ui, words::DISCONNECT, words::DISCONNECT_PROFILER).clicked() {
             command = Some(CellCommand::DisconnectSensor);
         }
+        let setup = cell.sensor.setup.as_ref().filter(|_| shape == model::Lamp::Bad && !is_practice);
+        if let Some(setup) = setup
+            && small_button(ui, words::RETRY, words::RETRY_PROFILER).clicked()
+        {
+            command = Some(CellCommand::ConnectSensor(setup.clone()));
+        }
         lamp(ui, shape, word, words::PROFILER);
     };
     card(ui, words::PROFILER, right, |ui| {
@@ -188,6 +203,9 @@ fn profiler(ui: &mut Ui, desk: &mut Desk<'_>) {
                 );
             }
             if let Some(live) = &cell.live {
+                if !is_replay && cell.sensor.state != LinkState::Ready {
+                    ui.multiply_opacity(theme::PAST_OPACITY);
+                }
                 let profile = &live.reading.profile;
                 value_row(ui, words::POINTS, words::valid_of(profile.valid_points().count(), profile.len()));
                 value_row(ui, words::RATE, words::rate(&fixed(live.rate_hz, 0)));

@@ -7,6 +7,7 @@ use egui::{RichText, Ui, UiBuilder, vec2};
 
 use crate::app::cell::LiveProfile;
 use crate::calibrate::Reading;
+use crate::device::LinkState;
 use crate::fit::CircleMethod;
 use crate::text::capture as words;
 use crate::ui::arcs::curve::{self, CurveLook};
@@ -38,6 +39,8 @@ pub fn show(ui: &mut Ui, height: f32, desk: &mut Desk<'_>) {
 fn live_card(ui: &mut Ui, height: f32, desk: &mut Desk<'_>) {
     let cell = desk.view.cell;
     let is_fitted = desk.state.is_profile_fitted;
+    // Nothing comes any more from a link that is broken; what is replayed needs none.
+    let is_past = cell.live.is_some() && cell.replay.is_none() && cell.sensor.state != LinkState::Ready;
     let mut fits = false;
     let right = |ui: &mut Ui| {
         ui.spacing_mut().interact_size.y = 22.0;
@@ -45,7 +48,9 @@ fn live_card(ui: &mut Ui, height: f32, desk: &mut Desk<'_>) {
         if cell.live.is_some() && !is_fitted {
             fits = ui.button(words::FIT_VIEW).on_hover_text(words::FIT_VIEW_HINT).clicked();
         }
-        if let Some(live) = &cell.live {
+        if is_past {
+            ui.label(theme::dim(ui, words::LAST_PROFILE));
+        } else if let Some(live) = &cell.live {
             ui.label(theme::dim(ui, words::rate(&fixed(live.rate_hz, 0))));
         }
     };
@@ -53,12 +58,15 @@ fn live_card(ui: &mut Ui, height: f32, desk: &mut Desk<'_>) {
     card_with_height(ui, words::LIVE, height, right, |ui| {
         let Some(live) = &cell.live else {
             let watched = cell.watched_folder.as_ref().map(|folder| folder.display().to_string());
-            return match (&cell.sensor.setup, watched) {
-                (Some(_), Some(folder)) => nothing(ui, &words::live_nothing_in(&folder)),
-                (Some(_), None) => nothing(ui, words::LIVE_NOTHING),
-                (None, _) => nothing(ui, words::LIVE_OFF),
+            return match (cell.sensor.state == LinkState::Ready, watched) {
+                (true, Some(folder)) => nothing(ui, &words::live_nothing_in(&folder)),
+                (true, None) => nothing(ui, words::LIVE_NOTHING),
+                (false, _) => nothing(ui, words::LIVE_OFF),
             };
         };
+        if is_past {
+            ui.multiply_opacity(theme::PAST_OPACITY);
+        }
         let model = desk.state.profile_of(live, ball_radius_mm);
         arc_line(ui, live);
         let extent = profile::extent(&model, true);

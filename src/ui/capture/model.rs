@@ -191,7 +191,8 @@ fn next_while_running(view: &View<'_>) -> Option<Next> {
                 Next::command(words::now::ACCEPT, words::ACCEPT, CellCommand::AcceptProposal)
             });
         }
-        if run.is_paused && !cell.is_busy() {
+        // While the next step is worked out, nothing moves either.
+        if run.is_paused && matches!(cell.activity, Activity::Idle | Activity::Thinking) {
             return Some(Next::command(words::now::RESUME, words::RESUME, CellCommand::ResumeRun));
         }
     }

@@ -24,9 +24,38 @@ pub fn name_of(wanted: Vec3) -> Option<usize> {
     (0..DIRECTIONS.len()).find(|idx| direction(*idx).dot(&wanted) > least)
 }
 
-/// Looking along the flange's z, the line along its x, some way in front of it: where one begins.
-pub const USUAL: RoughMounting =
-    RoughMounting { translation_mm: [0.0, 0.0, 100.0], quaternion_wxyz: [1.0, 0.0, 0.0, 0.0] };
+/// A mounting that is being typed: no number of it is made up.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MountingDraft {
+    /// Its axes; where it is does not count.
+    pub axes: RoughMounting,
+    /// Where it is in the flange, as typed.
+    pub place_mm: [String; 3],
+}
+
+impl Default for MountingDraft {
+    /// Looking along the flange's z, the line along its x, nowhere yet.
+    fn default() -> Self {
+        let axes = RoughMounting { translation_mm: [0.0; 3], quaternion_wxyz: [1.0, 0.0, 0.0, 0.0] };
+        Self { axes, place_mm: Default::default() }
+    }
+}
+
+impl MountingDraft {
+    /// The mounting, once all of its numbers are typed.
+    #[must_use]
+    pub fn typed(&self) -> Option<RoughMounting> {
+        let mut translation_mm = [0.0; 3];
+        for (value, text) in translation_mm.iter_mut().zip(&self.place_mm) {
+            let text = text.trim().replace('−', "-").replace(',', ".");
+            *value = text.parse::<f64>().ok().filter(|value| value.abs() <= FURTHEST_MM)?;
+        }
+        Some(RoughMounting { translation_mm, ..self.axes })
+    }
+}
+
+/// No sensor is mounted further from the flange, mm.
+pub const FURTHEST_MM: f64 = 2000.0;
 
 /// The rotation `flange_from_sensor` of a mounting; none for a quaternion without length.
 #[must_use]
@@ -72,7 +101,7 @@ mod tests {
     fn every_pair_of_axes_gives_a_rotation_that_says_so() {
         for look in 0..6 {
             for line in 0..6 {
-                let mounting = turned(USUAL, direction(look), direction(line));
+                let mounting = turned(MountingDraft::default().axes, direction(look), direction(line));
                 let [seen_look, seen_line] = look_and_line(&mounting);
                 assert_eq!(name_of(seen_look), Some(look));
                 let seen_line = name_of(seen_line).expect("along an axis");
@@ -84,6 +113,20 @@ mod tests {
                 let norm: f64 = mounting.quaternion_wxyz.iter().map(|part| part * part).sum();
                 assert!((norm - 1.0).abs() < 1e-12);
             }
+        }
+    }
+
+    #[test]
+    fn a_mounting_is_none_until_all_of_it_is_typed() {
+        let mut draft = MountingDraft::default();
+        for (idx, text) in ["12,5", "−3", " 90 "].into_iter().enumerate() {
+            assert_eq!(draft.typed(), None);
+            draft.place_mm[idx] = text.to_owned();
+        }
+        assert_eq!(draft.typed().expect("typed").translation_mm, [12.5, -3.0, 90.0]);
+        for wrong in ["", "far", "NaN", "1e9"] {
+            draft.place_mm[1] = wrong.to_owned();
+            assert_eq!(draft.typed(), None, "{wrong}");
         }
     }
 

@@ -17,6 +17,7 @@ use crate::ui::{PanelContext, theme};
 
 use super::memory::CellMemory;
 use super::model::{Deed, SearchCurve, View};
+use super::mounting::MountingDraft;
 use super::{connection, live, machine, settings, strip, work};
 
 /// Width of the column at the left, points.
@@ -38,6 +39,8 @@ pub struct CaptureState {
     pub(super) is_curve_fitted: bool,
     /// Radius of the ball of a new session, mm.
     pub(super) radius_mm: f64,
+    /// The mounting that is being typed.
+    pub(super) mounting: MountingDraft,
     /// Whether the mounting is to be seen in the next frame.
     pub(super) reveals_mounting: bool,
     /// Where the proposal of the last frame was, in the base.
@@ -53,6 +56,7 @@ impl Default for CaptureState {
             curve: None,
             is_curve_fitted: true,
             radius_mm: 15.0,
+            mounting: MountingDraft::default(),
             reveals_mounting: false,
             seen_proposal: None,
         }

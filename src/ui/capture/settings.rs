@@ -1,8 +1,8 @@
 //! What is set before motion, in sections that fold, each with its values in a line.
 
-use egui::{ComboBox, DragValue, Frame, Margin, Role, Ui, WidgetInfo};
+use egui::{Button, ComboBox, DragValue, Frame, Margin, Role, TextEdit, Ui, WidgetInfo};
 
-use crate::app::cell::CellSettings;
+use crate::app::cell::{CellSettings, RoughMounting};
 use crate::device::WorkspaceBox;
 use crate::device::safety::MOST_ROTATION_SPEED_DEG_S;
 use crate::device::search::{DirectionFrame, StopRule};
@@ -40,7 +40,11 @@ pub fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
                     ui.add_enabled_ui(is_free, |ui| search(ui, &mut settings));
                 });
                 let limits = &settings.limits;
-                let summary = words::limits_summary(&fixed(limits.max_speed_mm_s, 0), limits.workspace.is_some());
+                let summary = words::limits_summary(
+                    &fixed(limits.max_speed_mm_s, 0),
+                    &fixed(limits.max_move_mm, 0),
+                    limits.workspace.is_some(),
+                );
                 section(ui, words::LIMITS, &summary, None, |ui| {
                     ui.add_enabled_ui(is_free, |ui| limits_rows(ui, &mut settings, desk));
                 });
@@ -189,14 +193,42 @@ fn captures(ui: &mut Ui, settings: &mut CellSettings) {
     number_row(ui, words::RETRIES, "", DragValue::new(&mut settle.num_retries).range(0..=20).speed(0.05));
 }
 
-fn mounting_rows(ui: &mut Ui, settings: &mut CellSettings, desk: &Desk<'_>) {
+fn mounting_rows(ui: &mut Ui, settings: &mut CellSettings, desk: &mut Desk<'_>) {
     hint(ui, if desk.view.has_solution { words::MOUNTING_SOLVED } else { words::MOUNTING_WHY });
     ui.add_space(4.0);
-    let mut is_given = settings.mounting.is_some();
-    if ui.checkbox(&mut is_given, words::MOUNTING_GIVEN).changed() {
-        settings.mounting = is_given.then_some(mounting::USUAL);
+    hint(ui, words::MOUNTING_ORIGIN);
+    ui.add_space(4.0);
+    if let Some(given) = &mut settings.mounting {
+        given_rows(ui, given, desk);
+        if ui.button(words::FORGET_MOUNTING).clicked() {
+            settings.mounting = None;
+        }
+        return;
     }
-    let Some(given) = &mut settings.mounting else { return };
+    let draft = &mut desk.state.mounting;
+    axes_rows(ui, &mut draft.axes);
+    for (text, name) in draft.place_mm.iter_mut().zip(["x", "y", "z"]) {
+        let name = words::mounting_number(name);
+        split_row(ui, &name, |ui| {
+            let field = ui.add(TextEdit::singleline(text).hint_text(words::MILLIMETRES).desired_width(72.0));
+            let shown = text.clone();
+            field.widget_info(|| {
+                let mut info = WidgetInfo::text_edit(true, "", &shown, words::MILLIMETRES);
+                info.label = Some(name.clone());
+                info
+            });
+        });
+    }
+    ui.add_space(4.0);
+    let typed = draft.typed();
+    let button = ui.add_enabled(typed.is_some(), Button::new(words::USE_MOUNTING));
+    if button.on_disabled_hover_text(words::MOUNTING_MISSING).clicked() {
+        settings.mounting = typed;
+    }
+}
+
+/// What the sensor looks along, and how its line lies.
+fn axes_rows(ui: &mut Ui, given: &mut RoughMounting) {
     let [look, line] = mounting::look_and_line(given);
     for (label, named, is_look) in [(words::LOOKS_ALONG, look, true), (words::LINE_ALONG, line, false)] {
         let named = mounting::name_of(named);
@@ -214,8 +246,16 @@ fn mounting_rows(ui: &mut Ui, settings: &mut CellSettings, desk: &Desk<'_>) {
             }
         });
     }
+}
+
+fn given_rows(ui: &mut Ui, given: &mut RoughMounting, desk: &Desk<'_>) {
+    axes_rows(ui, given);
     for (value, name) in given.translation_mm.iter_mut().zip(["x", "y", "z"]) {
-        let field = DragValue::new(value).range(-2000.0..=2000.0).speed(0.5).max_decimals(1).suffix(" mm");
+        let field = DragValue::new(value)
+            .range(-mounting::FURTHEST_MM..=mounting::FURTHEST_MM)
+            .speed(0.5)
+            .max_decimals(1)
+            .suffix(" mm");
         number_row(ui, &words::mounting_number(name), "", field);
     }
     let convention = desk.view.notation().convention;

@@ -213,6 +213,8 @@ fn run_under_way(ui: &mut Ui, desk: &mut Desk<'_>) {
     let part = f32::from(run.num_done + run.num_failed) / f32::from(run.num_stations.max(1));
     ui.label(theme::strong(words::run_progress(run.num_done, run.num_stations, run.num_failed)));
     let accent = theme::palette(ui).accent;
+    // The track is to be seen before anything is done.
+    ui.visuals_mut().extreme_bg_color = theme::palette(ui).hairline;
     ui.add(ProgressBar::new(part).desired_height(8.0).fill(accent));
     let state = match (run.is_asking, run.is_paused) {
         (true, _) => words::RUN_ASKS,
