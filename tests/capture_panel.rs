@@ -295,6 +295,7 @@ fn a_broken_link_says_what_happened_and_when_it_is_tried_again() {
     let harness = Bench::new(CellView { robot, ..connected(Readiness::Ready) }).harness();
     harness.get_by_label_contains(&words::again_in(Duration::from_secs(4)));
     harness.get_by_label(&error.to_string());
+    harness.get_by_label(words::RETRY_ROBOT);
     let delay = harness.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay;
     assert!(delay <= Duration::from_secs(1), "it counts down: {delay:?}");
 }
@@ -404,7 +405,8 @@ fn the_mounting_is_asked_for_once_it_is_needed() {
     harness.run_steps(1);
     let Some(Command::Cell(command)) = harness.state().commands.first() else { panic!("settings") };
     let CellCommand::SetSettings(settings) = command.as_ref() else { panic!("{command:?}") };
-    assert_eq!(settings.mounting.expect("typed").translation_mm, [20.0, -10.0, 250.0]);
+    let typed = RoughMounting { translation_mm: [20.0, -10.0, 250.0], quaternion_wxyz: [1.0, 0.0, 0.0, 0.0] };
+    assert_eq!(settings.mounting, Some(typed));
 }
 
 #[test]

@@ -123,7 +123,8 @@ mod tests {
             assert_eq!(draft.typed(), None);
             draft.place_mm[idx] = text.to_owned();
         }
-        assert_eq!(draft.typed().expect("typed").translation_mm, [12.5, -3.0, 90.0]);
+        let expected = RoughMounting { translation_mm: [12.5, -3.0, 90.0], ..draft.axes };
+        assert_eq!(draft.typed(), Some(expected));
         for wrong in ["", "far", "NaN", "1e9"] {
             draft.place_mm[1] = wrong.to_owned();
             assert_eq!(draft.typed(), None, "{wrong}");
