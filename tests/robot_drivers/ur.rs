@@ -22,6 +22,7 @@ const OFFSET: UrPose = UrPose([0.01, -0.02, 0.1, 0.0, 0.3, 0.0]);
 
 /// What a controller holds.
 #[derive(Clone, Debug)]
+#[expect(clippy::struct_excessive_bools, reason = "independent faults, any of which may be on")]
 struct State {
     base_from_flange: Transform<Base, Flange>,
     /// The active tool point.
