@@ -400,7 +400,13 @@ fn each_robot_and_profiler_moves_sees_and_stops_by_its_driver() {
         // Out of reach: refused, though a way that is cut into pieces may have been begun.
         let far = Rigid::translation(3000.0, 0.0, 0.0) * home;
         let refusal = go(robot.as_mut(), &far).expect_err("out of reach");
-        assert!(matches!(refusal, DeviceError::Refused { .. } | DeviceError::NotArrived { .. }), "{refusal}");
+        assert!(
+            matches!(
+                refusal,
+                DeviceError::Refused { .. } | DeviceError::OutOfReach { .. } | DeviceError::NotArrived { .. }
+            ),
+            "{refusal}"
+        );
         // Stopped on its way; a server of MAPPDK has one client.
         drop(robot);
         let mut robot = robot::connect(&cell.robot_setup, soon()).expect("a robot");
@@ -523,7 +529,7 @@ fn faults_of_the_cell_do_what_they_say() {
     cell.inject(FaultSpec::now(Fault::RobotRefuses).starting(FaultStart::AfterMoves(1)));
     go(robot.as_mut(), &near).expect("the first move is done");
     let refusal = go(robot.as_mut(), &home).expect_err("the second is not");
-    assert!(matches!(refusal, DeviceError::Refused { .. }), "{refusal}");
+    assert!(matches!(refusal, DeviceError::OutOfReach { .. }), "{refusal}");
     cell.clear_faults();
     let section = |sensor: &mut dyn SensorDriver| arc_in(&cell, &fresh_profile(sensor)).circle.radius_mm;
     let before = section(sensor.as_mut());
