@@ -14,6 +14,8 @@ use super::actions::Action;
 use super::capture::model::is_running;
 use super::{Selection, theme};
 
+/// Longer marks are words.
+const MOST_SIGNS: usize = 4;
 /// Height of a step, points: large enough for a gloved hand.
 const STEP_HEIGHT: f32 = 40.0;
 
@@ -121,7 +123,9 @@ fn paint_mark(ui: &Ui, rect: Rect, mark: &Mark) {
         Mark::Look(text) => (text, palette.warn),
         Mark::Bad(text) => (text, palette.bad),
     };
-    let font = TextStyle::Body.resolve(ui.style());
+    // A word has less room than a sign.
+    let style = if text.chars().count() > MOST_SIGNS { TextStyle::Small } else { TextStyle::Body };
+    let font = style.resolve(ui.style());
     ui.painter().text(rect.right_center() - vec2(12.0, 0.0), Align2::RIGHT_CENTER, text, font, color);
 }
 

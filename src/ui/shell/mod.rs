@@ -6,6 +6,7 @@ mod live_cell;
 mod news;
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use egui::{CentralPanel, Context, Frame, Margin, Panel, Stroke, Ui, ViewportCommand};
 
@@ -39,6 +40,8 @@ const TOP_HEIGHT: f32 = 44.0;
 const BOTTOM_HEIGHT: f32 = 40.0;
 /// Width of the rail, points.
 const RAIL_WIDTH: f32 = 148.0;
+/// From news to the frame that shows it: poses and profiles that come in between share one.
+const WAKE_AFTER: Duration = Duration::from_millis(25);
 /// Width of the inspector, points.
 const INSPECTOR_WIDTH: f32 = 320.0;
 
@@ -99,7 +102,8 @@ impl Shell {
     pub fn new(ctx: &Context, persisted: Persisted) -> Self {
         theme::install(ctx);
         let repaint = ctx.clone();
-        let wake: Wake = Arc::new(move || repaint.request_repaint());
+        // After a moment rather than at once: that is one frame for all that arrives together, where "at once" means two.
+        let wake: Wake = Arc::new(move || repaint.request_repaint_after(WAKE_AFTER));
         let mut start = StartState::default();
         start.read_samples(&wake);
         ctx.set_theme(persisted.theme.preference());
@@ -177,9 +181,8 @@ impl Shell {
 
     /// Takes in finished jobs; also while the window is hidden.
     pub fn logic(&mut self, ctx: &Context) {
-        if self.workbench.poll() {
-            ctx.request_repaint();
-        }
+        // What has come is drawn in the frame that follows; whoever brought it has asked for that.
+        self.workbench.poll();
         self.start.poll();
         self.start.look_for_files(&self.persisted.recent_files, &self.wake);
         self.look_at_file(ctx);
