@@ -1,7 +1,7 @@
 //! A simulated cell that serves the real protocols on loopback: for practice, and for tests.
 //!
-//! An arm with its real reach ([`chain`], [`motion`]), a profiler with its real field of view ([`head`]) and a ball on a post
-//! stand in one [`world`]; [`server`] answers for them in the messages of the drivers, over [`net`]. [`fault`] says what goes
+//! An arm with its real reach (`chain`, `motion`), a profiler with its real field of view (`head`) and a ball on a post
+//! stand in one `world`; `server` answers for them in the messages of the drivers, over `net`. `fault` says what goes
 //! wrong on request. What is not simulated: collisions, the arm's dynamics, the optics beyond what is hidden or too flat.
 
 pub mod chain;
