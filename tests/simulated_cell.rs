@@ -224,12 +224,15 @@ fn ports_keep_their_distances_and_a_taken_one_is_named() {
     let same = SimOptions { port_offset: Some(taken - 18735), ..quick() };
     let refusal = SimCell::start(&same).expect_err("taken").to_string();
     assert!(refusal.contains(&taken.to_string()) && refusal.contains("--port-offset"), "{refusal}");
-    // All but the page of a robot that is not read by it.
-    let offset = cell.robot_setup.endpoint.port - 18735;
     drop(cell);
-    let _page = TcpListener::bind(("127.0.0.1", 80 + offset)).expect("free again");
-    let pageless = SimCell::start(&SimOptions { port_offset: Some(offset), ..quick() }).expect("the others are free");
-    assert!(pageless.ports.iter().all(|(port, _)| *port != 80 + offset));
+    // All but the page of a robot that is not read by it. Ports that were found free may be taken by somebody quick.
+    let pageless = (0..20).find_map(|_| {
+        let offset = SimCell::start(&quick()).ok()?.robot_setup.endpoint.port - 18735;
+        let _page = TcpListener::bind(("127.0.0.1", 80 + offset)).ok()?;
+        let cell = SimCell::start(&SimOptions { port_offset: Some(offset), ..quick() }).ok()?;
+        Some(cell.ports.iter().all(|(port, _)| *port != 80 + offset))
+    });
+    assert_eq!(pageless, Some(true));
     let folder = SimOptions { sensor: SensorKind::Folder, ..quick() };
     assert!(SimCell::start(&folder).expect_err("no protocol").to_string().contains("watched folder"));
 }
