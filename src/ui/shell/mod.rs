@@ -5,8 +5,8 @@ mod imports;
 mod live_cell;
 mod news;
 
-use std::sync::Arc;
-use std::time::Duration;
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
 
 use egui::{CentralPanel, Context, Frame, Margin, Panel, Stroke, Ui, ViewportCommand};
 
@@ -41,7 +41,10 @@ const BOTTOM_HEIGHT: f32 = 40.0;
 /// Width of the rail, points.
 const RAIL_WIDTH: f32 = 148.0;
 /// From news to the frame that shows it: poses and profiles that come in between share one.
-const WAKE_AFTER: Duration = Duration::from_millis(25);
+const WAKE_AFTER: Duration = Duration::from_millis(8);
+/// From one frame to the next that only shows news. What the user does is answered at once; a live profile that is drawn
+/// more often looks no smoother, and a machine without a graphics card has to paint every frame by itself.
+const NEWS_EVERY: Duration = Duration::from_millis(50);
 /// Width of the inspector, points.
 const INSPECTOR_WIDTH: f32 = 320.0;
 
@@ -65,6 +68,8 @@ struct FileWatch {
 pub struct Shell {
     workbench: Workbench,
     wake: Wake,
+    /// When the last frame was begun.
+    last_frame: Arc<Mutex<Instant>>,
     step: Step,
     selection: Selection,
     start: StartState,
@@ -102,8 +107,13 @@ impl Shell {
     pub fn new(ctx: &Context, persisted: Persisted) -> Self {
         theme::install(ctx);
         let repaint = ctx.clone();
+        let last_frame = Arc::new(Mutex::new(Instant::now()));
+        let seen_frame = Arc::clone(&last_frame);
         // After a moment rather than at once: that is one frame for all that arrives together, where "at once" means two.
-        let wake: Wake = Arc::new(move || repaint.request_repaint_after(WAKE_AFTER));
+        let wake: Wake = Arc::new(move || {
+            let since_frame = seen_frame.lock().map_or(NEWS_EVERY, |at| at.elapsed());
+            repaint.request_repaint_after(NEWS_EVERY.saturating_sub(since_frame).max(WAKE_AFTER));
+        });
         let mut start = StartState::default();
         start.read_samples(&wake);
         ctx.set_theme(persisted.theme.preference());
@@ -115,6 +125,7 @@ impl Shell {
         Self {
             workbench,
             wake,
+            last_frame,
             step: Step::default(),
             selection: Selection::default(),
             start,
@@ -197,6 +208,9 @@ impl Shell {
     /// Draws one frame and carries out what the user asked for in it.
     pub fn ui(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
+        if let Ok(mut at) = self.last_frame.lock() {
+            *at = Instant::now();
+        }
         // Before anything else, and whatever else has the keyboard.
         if live_cell::takes_stop_key(&ctx, self.workbench.cell()) {
             self.workbench.apply(live_cell::stop());
