@@ -106,7 +106,7 @@ fn print_sides() {
                 solution.stations.iter().all(|station| {
                     let base_from_flange = session.stations[station.station_idx].captures[0].base_from_flange;
                     let base_from_sensor = base_from_flange * truth.flange_from_sensor;
-                    let y = base_from_sensor.inverse().map_point(truth.ball_in_base_mm).y;
+                    let y = base_from_sensor.inverse().map_point(truth.target_in_base_mm).y;
                     let side = if y < 0.0 { Side::Minus } else { Side::Plus };
                     side == station.side
                 })

@@ -73,7 +73,7 @@ fn hand_eye(criterion: &mut Criterion) {
         let sensor_from_flange = truth.flange_from_sensor.rigid().inverse();
         let centres: Vec<Vec3> = poses
             .iter()
-            .map(|pose| (sensor_from_flange * pose.inverse() * nalgebra::Point3::from(truth.ball_in_base_mm)).coords)
+            .map(|pose| (sensor_from_flange * pose.inverse() * nalgebra::Point3::from(truth.target_in_base_mm)).coords)
             .collect();
         group.bench_function(format!("from {num_poses} arc centres"), |bencher| {
             bencher.iter(|| {
@@ -93,7 +93,7 @@ fn hand_eye(criterion: &mut Criterion) {
         let fixed_point = solve(&problem, Method::BallFixedPoint).expect("a solution");
         let start = State {
             flange_from_sensor: *fixed_point.flange_from_sensor.rigid(),
-            ball_in_base: fixed_point.ball_in_base_mm,
+            ball_in_base: fixed_point.target_in_base_mm,
         };
         group.bench_function(format!("bundle, {num_poses} x 800 points"), |bencher| {
             bencher.iter(|| refine(black_box(&problem), start));

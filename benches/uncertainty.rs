@@ -87,7 +87,7 @@ fn print_row(options: &SimulationOptions, is_stated: bool) {
 /// a smaller RMS error. Computed from how z of every point follows the ball's centre, not from the program's own sums.
 fn bound_mm(session: &Session, options: &SimulationOptions, point_in_sensor: Vec3) -> f64 {
     let truth = session.truth.as_ref().expect("simulated");
-    let state = State { flange_from_sensor: *truth.flange_from_sensor.rigid(), ball_in_base: truth.ball_in_base_mm };
+    let state = State { flange_from_sensor: *truth.flange_from_sensor.rigid(), ball_in_base: truth.target_in_base_mm };
     let sensor_from_flange = state.flange_from_sensor.rotation.to_rotation_matrix().into_inner().transpose();
     let mut information = Hessian::zeros();
     for capture in session.stations.iter().flat_map(|station| &station.captures) {

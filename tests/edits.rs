@@ -195,7 +195,7 @@ fn start() -> impl Strategy<Value = Session> {
                 let rows: Vec<Vec3> = (0..session.stations.len()).map(|idx| Vec3::repeat(idx as f64)).collect();
                 session.published = Some(Published {
                     error_from_first_mm: if has_errors { rows.clone() } else { Vec::new() },
-                    ball_in_base_mm: rows,
+                    target_in_base_mm: rows,
                     ..Published::default()
                 });
             }
@@ -288,13 +288,13 @@ fn session(num_captures: &[usize]) -> Session {
     });
     let stations: Vec<Station> = stations.collect();
     let rows: Vec<Vec3> = (0..stations.len()).map(|idx| Vec3::repeat(idx as f64)).collect();
-    let published = Published { ball_in_base_mm: rows.clone(), error_from_first_mm: rows, ..Published::default() };
+    let published = Published { target_in_base_mm: rows.clone(), error_from_first_mm: rows, ..Published::default() };
     Session { stations, published: Some(published), ..Session::new(Target::ball(15.0)) }
 }
 
 /// The session in short: each station's label, the places that its captures had, and the printed row behind `|`.
 fn in_short(session: &Session) -> String {
-    let printed = session.published.as_ref().map_or(&[][..], |published| &published.ball_in_base_mm);
+    let printed = session.published.as_ref().map_or(&[][..], |published| &published.target_in_base_mm);
     let station = |(idx, station): (usize, &Station)| {
         let places = station.captures.iter().map(|capture| match capture.reading {
             Reading::Point(point) => format!("{}{}", point.x, point.y),

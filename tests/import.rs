@@ -68,7 +68,7 @@ fn the_tables_of_the_paper_are_read_from_its_text() {
         let expected = sample(expected);
         assert_same_stations(&session, &expected);
         let (found, printed) = (session.published.expect("printed"), expected.published.expect("printed"));
-        assert_eq!(found.ball_in_base_mm, printed.ball_in_base_mm);
+        assert_eq!(found.target_in_base_mm, printed.target_in_base_mm);
         assert_eq!(found.error_from_first_mm, printed.error_from_first_mm);
     }
 }

@@ -61,7 +61,7 @@ fn carrier_pose(session: &Session, base_from_flange: &Rigid) -> Rigid {
 fn true_ball_in_sensor(session: &Session, base_from_flange: &Rigid) -> Vec3 {
     let truth = session.truth.as_ref().expect("simulated");
     let world_from_sensor = carrier_pose(session, base_from_flange) * truth.flange_from_sensor.rigid();
-    world_from_sensor.inverse_transform_point(&truth.ball_in_base_mm.into()).coords
+    world_from_sensor.inverse_transform_point(&truth.target_in_base_mm.into()).coords
 }
 
 /// Measures a sweep that begins at a pose, with the session's truth, radius and noise.
@@ -75,7 +75,7 @@ fn add_station(session: &mut Session, base_from_flange: &Rigid, num_captures: i3
     let captures = (0..num_captures)
         .map(|idx| {
             let world_from_sensor = first * Rigid::translation(0.0, step_mm * f64::from(idx), 0.0);
-            let ball = world_from_sensor.inverse_transform_point(&truth.ball_in_base_mm.into()).coords;
+            let ball = world_from_sensor.inverse_transform_point(&truth.target_in_base_mm.into()).coords;
             let pose = carrier_pose(session, &(world_from_sensor * mounting.inverse()));
             let position = pose.translation.vector + noise.normal3() * position_std_mm;
             let rotation = pose.rotation * so3::exp(noise.normal3() * orientation_std);
@@ -168,7 +168,7 @@ fn the_first_planned_station_beats_random_ones() {
                     );
                     let spin = so3::exp(Vec3::z() * std::f64::consts::PI * (noise.unit() - 0.5));
                     let rotation = upright.rotation * tilt * spin;
-                    let origin = truth.ball_in_base_mm - rotation * Vec3::new(0.0, 9.0, 95.0);
+                    let origin = truth.target_in_base_mm - rotation * Vec3::new(0.0, 9.0, 95.0);
                     let carrier =
                         Rigid::from_parts(origin.into(), rotation) * truth.flange_from_sensor.rigid().inverse();
                     with(&carrier_pose(&session, &carrier), &mut noise)
@@ -286,7 +286,7 @@ fn rough(session: &Session, looks_along_in_base: Vec3) -> RoughCell {
     RoughCell {
         mount: session.mount,
         flange_from_sensor: truth.flange_from_sensor.rigid() * off,
-        ball_in_base_mm: truth.ball_in_base_mm + Vec3::new(-8.0, 9.0, 8.0),
+        target_in_base_mm: truth.target_in_base_mm + Vec3::new(-8.0, 9.0, 8.0),
         radius_mm: 15.0,
         noise: handeye::calibrate::Noise::default(),
         looks_along_in_base,
@@ -312,7 +312,7 @@ fn a_plan_from_nothing_makes_a_calibration() {
             let mut at = pose(station);
             // By the rough mounting the ball is off; the operator brings it to where it was to be, the orientation stays.
             let meant = carrier_pose(&session, &at) * cell.flange_from_sensor;
-            let meant = meant.inverse_transform_point(&cell.ball_in_base_mm.into()).coords;
+            let meant = meant.inverse_transform_point(&cell.target_in_base_mm.into()).coords;
             let off = true_ball_in_sensor(&session, &at) - meant;
             let truth = session.truth.as_ref().expect("simulated");
             let mounting = *truth.flange_from_sensor.rigid();
@@ -344,7 +344,7 @@ fn impossible_limits_and_cells_are_refused() {
     for cell in [
         RoughCell { looks_along_in_base: Vec3::zeros(), ..cell },
         RoughCell { radius_mm: 0.0, ..cell },
-        RoughCell { ball_in_base_mm: Vec3::new(f64::NAN, 0.0, 0.0), ..cell },
+        RoughCell { target_in_base_mm: Vec3::new(f64::NAN, 0.0, 0.0), ..cell },
     ] {
         assert_eq!(from_nothing(&cell, &Limits::default(), 3), Err(PlanRefusal::Undetermined), "{cell:?}");
     }

@@ -26,7 +26,7 @@ fn check_exact(session: &Session, method: Method) -> Solution {
     let translation_mm =
         (solution.flange_from_sensor.translation_mm() - truth.flange_from_sensor.translation_mm()).norm();
     let angle_deg = solution.flange_from_sensor.rotation().angle_to(&truth.flange_from_sensor.rotation()).to_degrees();
-    let ball_mm = (solution.ball_in_base_mm - truth.ball_in_base_mm).norm();
+    let ball_mm = (solution.target_in_base_mm - truth.target_in_base_mm).norm();
     assert!(
         translation_mm < EXACT_MM && angle_deg < EXACT_DEG && ball_mm < EXACT_MM,
         "{}: off by {translation_mm:e} mm, {angle_deg:e}°, ball {ball_mm:e} mm",
@@ -280,7 +280,7 @@ fn a_given_side_is_kept_and_mixed_sides_are_found() {
         station.side = SideChoice::Given(*side);
     }
     let kept = solve(&problem(&given), Method::BallFixedPoint).expect("a solution");
-    assert!((kept.ball_in_base_mm - found.ball_in_base_mm).norm() < 1e-9);
+    assert!((kept.target_in_base_mm - found.target_in_base_mm).norm() < 1e-9);
     assert!(kept.stations.iter().all(|station| station.side_cost_ratio.is_none()));
 }
 

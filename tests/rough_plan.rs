@@ -42,7 +42,7 @@ impl Cell {
                 mount,
                 flange_from_sensor: flange_from_sensor * off,
                 // Nobody measures where the ball is before the first station.
-                ball_in_base_mm: Vec3::zeros(),
+                target_in_base_mm: Vec3::zeros(),
                 radius_mm: RADIUS_MM,
                 noise: Noise::default(),
                 looks_along_in_base: -Vec3::z(),
@@ -263,8 +263,8 @@ fn one_station_says_where_the_ball_is_and_leaves_the_mounting() {
         let off = cell.rough.flange_from_sensor.inverse() * now.flange_from_sensor;
         assert!(off.translation.vector.norm() < 1e-6 && off.rotation.angle() < 1e-8, "{off}");
         let pose = cell.carrier(station.base_from_flange.rigid());
-        let ball = pose * now.flange_from_sensor * nalgebra::Point3::from(station.ball_in_sensor_mm);
-        assert!((ball.coords - now.ball_in_base_mm).norm() < 1e-6);
+        let ball = pose * now.flange_from_sensor * nalgebra::Point3::from(station.target_in_sensor_mm);
+        assert!((ball.coords - now.target_in_base_mm).norm() < 1e-6);
         assert_eq!(refined(&cell.rough, &[]), cell.rough);
     }
 }

@@ -73,10 +73,11 @@ fn printed_errors_follow_from_printed_centres_but_for_the_known_misprints() {
     for (sample, rounding_mm) in samples::ALL[..2].iter().zip(ROUNDING_MM) {
         let session = parse(sample.json.as_bytes(), sample.file_name).expect(sample.file_name);
         let published = session.published.expect("it is from a paper");
-        assert_eq!(published.ball_in_base_mm.len(), 5);
+        assert_eq!(published.target_in_base_mm.len(), 5);
         assert_eq!(published.error_from_first_mm.len(), 5);
-        for (row, (ball, printed)) in published.ball_in_base_mm.iter().zip(&published.error_from_first_mm).enumerate() {
-            let error = ball - published.ball_in_base_mm[0];
+        for (row, (ball, printed)) in published.target_in_base_mm.iter().zip(&published.error_from_first_mm).enumerate()
+        {
+            let error = ball - published.target_in_base_mm[0];
             for axis in 0..3 {
                 if (error[axis] - printed[axis]).abs() > rounding_mm {
                     misprints.push((sample.file_name, row, axis));

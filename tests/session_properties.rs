@@ -95,7 +95,7 @@ prop_compose! {
             station.label = format!("{idx}°");
         }
         let published = is_published.then(|| Published {
-            ball_in_base_mm: stations.iter().map(|_| Vec3::new(0.1, -0.2, 1e-17)).collect(),
+            target_in_base_mm: stations.iter().map(|_| Vec3::new(0.1, -0.2, 1e-17)).collect(),
             ..Published::default()
         });
         let mut unknown = serde_json::Map::new();
@@ -111,7 +111,7 @@ prop_compose! {
             published,
             truth: true_pose.map(|pose| Truth {
                 flange_from_sensor: Transform::from_rigid(*pose.rigid()),
-                ball_in_base_mm: Vec3::new(1.0, 2.0, 0.3),
+                target_in_base_mm: Vec3::new(1.0, 2.0, 0.3),
                 unknown: serde_json::Map::new(),
             }),
             unknown,

@@ -463,7 +463,7 @@ fn sweeps_captured_by_the_drivers_give_the_truth() {
     assert!(off.translation.vector.norm() < WIRE_ERROR_MM, "{} mm", off.translation.vector.norm());
     // 0.001° in each of five poses.
     assert!(off.rotation.angle().to_degrees() < 0.005, "{}°", off.rotation.angle().to_degrees());
-    let ball_off = solution.ball_in_base_mm - truth.ball_in_base;
+    let ball_off = solution.target_in_base_mm - truth.ball_in_base;
     assert!(ball_off.norm() < WIRE_ERROR_MM, "{} mm", ball_off.norm());
 }
 

@@ -96,7 +96,7 @@ pub fn improvement(results: &[MethodResult]) -> Option<Improvement> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PublishedRow {
     /// Printed centre of the ball in the base, mm.
-    pub ball_in_base_mm: Vec3,
+    pub target_in_base_mm: Vec3,
     /// Printed error, mm; `None` where none was printed.
     pub printed_error_mm: Option<Vec3>,
     /// The error that follows from the printed centres, mm.
@@ -108,16 +108,16 @@ pub struct PublishedRow {
 /// Recomputes the printed errors from the printed centres.
 #[must_use]
 pub fn published_rows(published: &Published) -> Vec<PublishedRow> {
-    let Some(first) = published.ball_in_base_mm.first() else { return Vec::new() };
+    let Some(first) = published.target_in_base_mm.first() else { return Vec::new() };
     published
-        .ball_in_base_mm
+        .target_in_base_mm
         .iter()
         .enumerate()
         .map(|(row_idx, centre)| {
             let printed_error_mm = published.error_from_first_mm.get(row_idx).copied();
             let recomputed_error_mm = centre - first;
             PublishedRow {
-                ball_in_base_mm: *centre,
+                target_in_base_mm: *centre,
                 printed_error_mm,
                 recomputed_error_mm,
                 is_misprint: [0, 1, 2].map(|axis| {
@@ -144,7 +144,7 @@ pub fn distance_from_truth(solution: &Solution, truth: &Truth) -> TruthDistance 
     let reference_point = solution.uncertainty.as_ref().map_or_else(
         || {
             let count = solution.stations.len().max(1);
-            let sum: Vec3 = solution.stations.iter().map(|station| station.ball_in_sensor_mm).sum();
+            let sum: Vec3 = solution.stations.iter().map(|station| station.target_in_sensor_mm).sum();
             #[expect(clippy::cast_precision_loss, reason = "a session has few stations")]
             let count = count as f64;
             sum / count
@@ -199,7 +199,7 @@ mod tests {
 
     fn table_1() -> Published {
         Published {
-            ball_in_base_mm: vec![
+            target_in_base_mm: vec![
                 Vec3::new(324.442, -47.636, 140.087),
                 Vec3::new(324.593, -47.847, 140.077),
                 Vec3::new(324.298, -47.429, 140.021),

@@ -144,14 +144,14 @@ pub struct StationSolution {
     /// Cost of the best solution with the other side, over the cost of this one; `None` where the side was not in doubt.
     pub side_cost_ratio: Option<f64>,
     /// The ball's centre in the sensor frame of the first capture, mm.
-    pub ball_in_sensor_mm: Vec3,
+    pub target_in_sensor_mm: Vec3,
     /// Standard deviation of its coordinates from the profile alone, mm.
-    pub ball_in_sensor_std_mm: Option<Vec3>,
+    pub target_in_sensor_std_mm: Option<Vec3>,
     /// The same point through the calibration, in the base, mm.
-    pub ball_in_base_mm: Vec3,
-    /// `ball_in_base_mm` minus that of the first station used, mm.
+    pub target_in_base_mm: Vec3,
+    /// `target_in_base_mm` minus that of the first station used, mm.
     pub error_from_first_mm: Vec3,
-    /// `ball_in_base_mm` minus the mean over the stations used, mm.
+    /// `target_in_base_mm` minus the mean over the stations used, mm.
     pub error_from_mean_mm: Vec3,
     /// Distance between this station's ball and the ball of the solution made without it, mm.
     pub leave_one_out_mm: Option<f64>,
@@ -169,8 +169,8 @@ pub struct Solution {
     /// The hand-eye calibration.
     pub flange_from_sensor: Transform<Flange, Sensor>,
     /// The ball's centre, mm.
-    pub ball_in_base_mm: Vec3,
-    /// Distances of the stations' balls from `ball_in_base_mm`, in sample.
+    pub target_in_base_mm: Vec3,
+    /// Distances of the stations' balls from `target_in_base_mm`, in sample.
     pub scatter: RmsMax,
     /// Distances with each station predicted by the others; `None` where too few stations remain for that.
     pub leave_one_out: Option<RmsMax>,

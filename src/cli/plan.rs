@@ -129,7 +129,7 @@ fn rough_cell(args: &PlanArgs, session: &Session, problem: &BallProblem) -> Opti
     Some(RoughCell {
         mount: session.mount,
         flange_from_sensor: Rigid::from_parts(Vec3::new(x, y, z).into(), rotation),
-        ball_in_base_mm: Vec3::from_column_slice(args.ball_at.as_deref()?),
+        target_in_base_mm: Vec3::from_column_slice(args.ball_at.as_deref()?),
         radius_mm: problem.radius_mm,
         noise: problem.noise,
         looks_along_in_base: Vec3::from_column_slice(&args.looks_along),

@@ -94,7 +94,7 @@ pub struct RoughCell {
     /// sensor.
     pub flange_from_sensor: Rigid,
     /// The ball in the base; in the flange for [`Mount::Fixed`]. mm.
-    pub ball_in_base_mm: Vec3,
+    pub target_in_base_mm: Vec3,
     /// The ball's radius, mm.
     pub radius_mm: f64,
     /// The robot's noise as far as it is stated; that of a good arm otherwise.

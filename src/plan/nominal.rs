@@ -60,7 +60,7 @@ impl Nominal {
         Ok(Self {
             cell: Cell {
                 mount: rough.mount,
-                state: State { flange_from_sensor: mounting, ball_in_base: rough.ball_in_base_mm },
+                state: State { flange_from_sensor: mounting, ball_in_base: rough.target_in_base_mm },
                 models: vec![model],
             },
             reference: reference(looks_along, &mounting.rotation),
@@ -76,7 +76,7 @@ impl Nominal {
 pub(super) fn checked(rough: &RoughCell) -> Result<Vec3, PlanRefusal> {
     let looks_along = rough.looks_along_in_base.try_normalize(0.0).ok_or(PlanRefusal::Undetermined)?;
     let mounting = rough.flange_from_sensor.to_homogeneous();
-    let mut figures = mounting.iter().chain(rough.ball_in_base_mm.iter()).chain(looks_along.iter());
+    let mut figures = mounting.iter().chain(rough.target_in_base_mm.iter()).chain(looks_along.iter());
     let is_sound = figures.all(|v| v.is_finite()) && rough.radius_mm > 0.0;
     if is_sound { Ok(looks_along) } else { Err(PlanRefusal::Undetermined) }
 }
@@ -97,7 +97,7 @@ fn sweep(rough: &RoughCell, standoff_mm: f64) -> Vec<CentreObservation> {
     // a station may have.
     let ball_in_flange = match rough.mount {
         Mount::OnFlange => rough.flange_from_sensor * nalgebra::Point3::new(0.0, 0.0, standoff_mm),
-        Mount::Fixed => rough.ball_in_base_mm.into(),
+        Mount::Fixed => rough.target_in_base_mm.into(),
     };
     let orientation_std_rad = rough.noise.orientation_std_rad.unwrap_or_else(|| ORIENTATION_STD_DEG.to_radians());
     let position_std_mm = rough.noise.position_std_mm.unwrap_or(POSITION_STD_MM);

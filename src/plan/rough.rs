@@ -38,7 +38,7 @@ pub struct MeasuredStation {
     /// The pose at which the ball was seen there, as the controller reports it.
     pub base_from_flange: Transform<Base, Flange>,
     /// The ball's centre in the sensor frame, mm.
-    pub ball_in_sensor_mm: Vec3,
+    pub target_in_sensor_mm: Vec3,
     /// Its σ along each axis, mm.
     pub std_mm: Vec3,
 }
@@ -53,7 +53,7 @@ impl MeasuredStation {
         let [x_mm, z_mm] = section_centre_mm;
         Self {
             base_from_flange,
-            ball_in_sensor_mm: Vec3::new(x_mm, 0.0, z_mm),
+            target_in_sensor_mm: Vec3::new(x_mm, 0.0, z_mm),
             std_mm: Vec3::new(0.0, peak_std_mm, 0.0),
         }
     }
@@ -79,7 +79,7 @@ impl MeasuredStation {
         let information = self.std_mm.map(|std_mm| std_mm.hypot(LEAST_STD_MM).powi(-2));
         CentreObservation {
             information: Mat3::from_diagonal(&information),
-            ..CentreObservation::point(station, base_from_flange, self.ball_in_sensor_mm)
+            ..CentreObservation::point(station, base_from_flange, self.target_in_sensor_mm)
         }
     }
 }
@@ -112,7 +112,7 @@ struct Refined {
 pub fn refined(cell: &RoughCell, stations: &[MeasuredStation]) -> RoughCell {
     estimate(cell, stations).map_or(*cell, |refined| RoughCell {
         flange_from_sensor: refined.state.flange_from_sensor,
-        ball_in_base_mm: refined.state.ball_in_base,
+        target_in_base_mm: refined.state.ball_in_base,
         ..*cell
     })
 }
@@ -159,7 +159,7 @@ pub fn next_rough(
     };
     let planned_cell = Cell {
         mount: cell.mount,
-        state: State { flange_from_sensor: now.flange_from_sensor, ball_in_base: now.ball_in_base_mm },
+        state: State { flange_from_sensor: now.flange_from_sensor, ball_in_base: now.target_in_base_mm },
         models: FIRST_SECTION_RADII.map(model).to_vec(),
     };
     let Some(estimate) = estimate(cell, stations) else {

@@ -108,5 +108,5 @@ pub(super) fn orientations(reduced: &Reduced) -> Vec<UnitQuaternion<f64>> {
 pub(super) fn middle_of_balls(solution: &Solution) -> Vec3 {
     #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 stations")]
     let scale = 1.0 / solution.stations.len().max(1) as f64;
-    solution.stations.iter().map(|station| station.ball_in_sensor_mm).sum::<Vec3>() * scale
+    solution.stations.iter().map(|station| station.target_in_sensor_mm).sum::<Vec3>() * scale
 }

@@ -70,7 +70,7 @@ fn solution_entry(session: &Session, solution: &Solution, diagnosis: Option<&Dia
     entry.insert("method".to_owned(), json!(solution.method.id()));
     entry.insert("status".to_owned(), json!("ok"));
     entry.insert(names.sensor.to_owned(), transform(&solution.flange_from_sensor));
-    entry.insert(names.target.to_owned(), vector(solution.ball_in_base_mm));
+    entry.insert(names.target.to_owned(), vector(solution.target_in_base_mm));
     entry.insert("scatter_mm".to_owned(), json!({ "rms": solution.scatter.rms_mm, "max": solution.scatter.max_mm }));
     entry.insert(
         "leave_one_out_mm".to_owned(),
@@ -179,8 +179,8 @@ fn station_entry(station: &StationSolution, names: &Names) -> Value {
     entry.insert("used".to_owned(), json!(true));
     entry.insert("side".to_owned(), json!(station.side.symbol()));
     entry.insert("side_cost_ratio".to_owned(), json!(station.side_cost_ratio));
-    entry.insert("target_in_sensor_mm".to_owned(), vector(station.ball_in_sensor_mm));
-    entry.insert(names.target.to_owned(), vector(station.ball_in_base_mm));
+    entry.insert("target_in_sensor_mm".to_owned(), vector(station.target_in_sensor_mm));
+    entry.insert(names.target.to_owned(), vector(station.target_in_base_mm));
     entry.insert("error_from_first_mm".to_owned(), vector(station.error_from_first_mm));
     entry.insert("error_from_mean_mm".to_owned(), vector(station.error_from_mean_mm));
     entry.insert("leave_one_out_mm".to_owned(), json!(station.leave_one_out_mm));

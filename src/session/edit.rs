@@ -418,15 +418,15 @@ impl Labels {
 /// What a paper printed is one row a station: with other stations it fits no more.
 fn forget_printed_rows(session: &mut Session) {
     if let Some(published) = &mut session.published {
-        published.ball_in_base_mm.clear();
+        published.target_in_base_mm.clear();
         published.error_from_first_mm.clear();
     }
 }
 
 /// Applies to every list of printed rows; they are empty or one a station.
 fn for_printed_rows(session: &mut Session, mut change: impl FnMut(&mut Vec<Vec3>)) {
-    if let Some(Published { ball_in_base_mm, error_from_first_mm, .. }) = &mut session.published {
-        for rows in [ball_in_base_mm, error_from_first_mm] {
+    if let Some(Published { target_in_base_mm, error_from_first_mm, .. }) = &mut session.published {
+        for rows in [target_in_base_mm, error_from_first_mm] {
             if !rows.is_empty() {
                 change(rows);
             }

@@ -146,7 +146,7 @@ pub struct Station {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Published {
     /// Printed ball centres in the base, one a station, mm.
-    pub ball_in_base_mm: Vec<Vec3>,
+    pub target_in_base_mm: Vec<Vec3>,
     /// Printed error columns, one a station, mm, misprints included; empty if none were printed.
     pub error_from_first_mm: Vec<Vec3>,
     /// The table's title and source.
@@ -161,7 +161,7 @@ pub struct Truth {
     /// The true calibration. For [`Mount::Fixed`] it is `base_from_sensor`.
     pub flange_from_sensor: Transform<Flange, SensorFrame>,
     /// The true ball centre, mm. For [`Mount::Fixed`] it is in the flange.
-    pub ball_in_base_mm: Vec3,
+    pub target_in_base_mm: Vec3,
     /// Fields unknown to us.
     pub unknown: UnknownFields,
 }

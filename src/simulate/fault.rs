@@ -310,7 +310,7 @@ fn change_profiles(session: &mut Session, change: impl Fn(f64, f64) -> (f64, f64
 }
 
 fn give_sides(session: &mut Session) {
-    let Some(Truth { flange_from_sensor, ball_in_base_mm, .. }) = session.truth else { return };
+    let Some(Truth { flange_from_sensor, target_in_base_mm, .. }) = session.truth else { return };
     for station in &mut session.stations {
         let Some(first) = station.captures.first() else { continue };
         let world_from_carrier = match session.mount {
@@ -318,7 +318,7 @@ fn give_sides(session: &mut Session) {
             Mount::Fixed => first.base_from_flange.rigid().inverse(),
         };
         let world_from_sensor = world_from_carrier * flange_from_sensor.rigid();
-        let y = world_from_sensor.inverse_transform_point(&ball_in_base_mm.into()).y;
+        let y = world_from_sensor.inverse_transform_point(&target_in_base_mm.into()).y;
         station.side = SideChoice::Given(if y < 0.0 { Side::Minus } else { Side::Plus });
     }
 }

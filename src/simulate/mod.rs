@@ -84,7 +84,7 @@ pub fn simulate(options: &SimulationOptions) -> Session {
         published: None,
         truth: Some(Truth {
             flange_from_sensor: Transform::from_rigid(setup.carrier_from_sensor),
-            ball_in_base_mm: setup.ball_in_world,
+            target_in_base_mm: setup.ball_in_world,
             unknown: UnknownFields::new(),
         }),
         unknown: UnknownFields::new(),

@@ -32,7 +32,7 @@ fn for_each_offset(session: &Session, mut check: impl FnMut(Vec3)) {
         let world_from_sensor = world_from_carrier * truth.flange_from_sensor.rigid();
         let Reading::Profile(profile) = &capture.reading else { panic!("a profile") };
         for (_, x, z) in profile.valid_points() {
-            check((world_from_sensor * nalgebra::Point3::new(x, 0.0, z)).coords - truth.ball_in_base_mm);
+            check((world_from_sensor * nalgebra::Point3::new(x, 0.0, z)).coords - truth.target_in_base_mm);
         }
     }
 }

@@ -31,7 +31,7 @@ const STANDS_OUT_MM: f64 = 0.05;
 pub(super) struct StationFacts<'a> {
     pub station: &'a Station,
     pub side_cost_ratio: Option<f64>,
-    pub ball_in_sensor_std_mm: Option<Vec3>,
+    pub target_in_sensor_std_mm: Option<Vec3>,
     pub sweep: Option<Sweep>,
 }
 
@@ -105,9 +105,9 @@ impl Found<'_> {
                 label: facts.station.label.clone(),
                 side: if balls_in_sensor[idx].y < 0.0 { Side::Minus } else { Side::Plus },
                 side_cost_ratio: facts.side_cost_ratio,
-                ball_in_sensor_mm: balls_in_sensor[idx],
-                ball_in_sensor_std_mm: facts.ball_in_sensor_std_mm,
-                ball_in_base_mm: balls_in_base[idx],
+                target_in_sensor_mm: balls_in_sensor[idx],
+                target_in_sensor_std_mm: facts.target_in_sensor_std_mm,
+                target_in_base_mm: balls_in_base[idx],
                 error_from_first_mm: balls_in_base[idx] - balls_in_base[0],
                 error_from_mean_mm: balls_in_base[idx] - mean,
                 leave_one_out_mm: left_out[idx],
@@ -118,7 +118,7 @@ impl Found<'_> {
             method: self.method,
             mount: self.problem.mount,
             flange_from_sensor: Transform::from_rigid(state.flange_from_sensor),
-            ball_in_base_mm: state.ball_in_base,
+            target_in_base_mm: state.ball_in_base,
             scatter: rms_max(balls_in_base.iter().map(|ball| (ball - state.ball_in_base).norm())),
             leave_one_out: left_out.iter().all(Option::is_some).then(|| rms_max(left_out.iter().copied().flatten())),
             uncertainty,

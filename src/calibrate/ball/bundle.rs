@@ -48,7 +48,7 @@ pub fn solve(problem: &BallProblem) -> Result<Solution, SolveError> {
     warnings.extend(max_arc::radius_warning_at(problem, &settled.minimum.state));
     let facts = stations
         .into_iter()
-        .map(|station| StationFacts { station, side_cost_ratio: None, ball_in_sensor_std_mm: None, sweep: None })
+        .map(|station| StationFacts { station, side_cost_ratio: None, target_in_sensor_std_mm: None, sweep: None })
         .collect();
     Found {
         method: Method::BallBundle,

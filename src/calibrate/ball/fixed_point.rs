@@ -99,7 +99,7 @@ pub(super) fn find(problem: &BallProblem) -> Result<Found<'_>, SolveError> {
         .map(|(section, side_cost_ratio)| StationFacts {
             station: section.station,
             side_cost_ratio: side_cost_ratio.filter(|_| section.std_mm.is_some()),
-            ball_in_sensor_std_mm: section.std_mm,
+            target_in_sensor_std_mm: section.std_mm,
             sweep: None,
         })
         .collect();

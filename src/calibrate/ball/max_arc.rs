@@ -56,7 +56,7 @@ fn find(problem: &BallProblem) -> Result<Found<'_>, SolveError> {
             Ok(StationFacts {
                 station: sweep.station,
                 side_cost_ratio: None,
-                ball_in_sensor_std_mm: Some(curve.covariance.diagonal().map(|v| v.max(0.0).sqrt())),
+                target_in_sensor_std_mm: Some(curve.covariance.diagonal().map(|v| v.max(0.0).sqrt())),
                 sweep: Some(evaluated_sweep(problem, sweep, &curve, &state, direction)),
             })
         })

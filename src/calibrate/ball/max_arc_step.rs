@@ -75,7 +75,7 @@ fn find(problem: &BallProblem) -> Result<Found<'_>, SolveError> {
         .map(|sweep| StationFacts {
             station: sweep.station,
             side_cost_ratio: None,
-            ball_in_sensor_std_mm: None,
+            target_in_sensor_std_mm: None,
             sweep: None,
         })
         .collect();

@@ -44,8 +44,8 @@ fn method_table(out: &mut String, session: &Session, solution: &Solution) {
         let [q0, q1, q2, q3] = pose.quaternion_wxyz();
         write!(out, "{:<4} {q0:>8.5}  {q1:>8.5}  {q2:>8.5}  {q3:>8.5} |", station.label).ok();
         triple(out, pose.translation_mm(), 9);
-        triple(out, station.ball_in_sensor_mm, 9);
-        triple(out, station.ball_in_base_mm, 9);
+        triple(out, station.target_in_sensor_mm, 9);
+        triple(out, station.target_in_base_mm, 9);
         let error = station.error_from_first_mm;
         writeln!(out, " {:>8} {:>8} {:>8}", fixed(error.x, 3), fixed(error.y, 3), fixed(error.z, 3)).ok();
     }
@@ -54,9 +54,9 @@ fn method_table(out: &mut String, session: &Session, solution: &Solution) {
         "scatter of the ball in base: RMS {} mm, maximum {} mm (3D) about ({:.1}, {:.1}, {:.1})\n",
         fixed(solution.scatter.rms_mm, 3),
         fixed(solution.scatter.max_mm, 3),
-        solution.ball_in_base_mm.x,
-        solution.ball_in_base_mm.y,
-        solution.ball_in_base_mm.z
+        solution.target_in_base_mm.x,
+        solution.target_in_base_mm.y,
+        solution.target_in_base_mm.z
     )
     .ok();
 }
@@ -86,7 +86,7 @@ fn published_table(out: &mut String, session: &Session) {
     for (idx, row) in rows.iter().enumerate() {
         let label = session.stations.get(idx).map_or("", |station| station.label.as_str());
         write!(out, "{label:<4} ").ok();
-        for value in row.ball_in_base_mm.iter() {
+        for value in row.target_in_base_mm.iter() {
             write!(out, "{value:>9.3} ").ok();
         }
         out.push('|');

@@ -120,7 +120,7 @@ fn method_section(out: &mut String, session: &Session, solution: &Solution, diag
     );
     for station in &solution.stations {
         let (in_sensor, in_base, error) =
-            (station.ball_in_sensor_mm, station.ball_in_base_mm, station.error_from_first_mm);
+            (station.target_in_sensor_mm, station.target_in_base_mm, station.error_from_first_mm);
         let f = |value: f64| fixed(value, 3);
         writeln!(
             out,

@@ -161,7 +161,7 @@ fn a_switched_tool_is_found_and_taken_out() {
             Mount::OnFlange => Vec3::new(5.0, -3.0, 60.0),
             // Where the ball shows to be; the orientation of the frame stays open.
             Mount::Fixed => {
-                let ball = session.truth.as_ref().expect("simulated").ball_in_base_mm;
+                let ball = session.truth.as_ref().expect("simulated").target_in_base_mm;
                 let turn = crate::geometry::so3::exp(Vec3::z() * 30.0_f64.to_radians());
                 ball - turn.inverse() * (ball - Vec3::new(5.0, -3.0, 60.0))
             }

@@ -386,7 +386,7 @@ fn published(cursor: &Cursor<'_>, num_stations: usize) -> Result<Published, Refu
         elements.iter().map(|element| element.vec3(quantity)).collect()
     };
     Ok(Published {
-        ball_in_base_mm: rows("ball_in_base_mm", &limits::POSITION_MM)?,
+        target_in_base_mm: rows("ball_in_base_mm", &limits::POSITION_MM)?,
         error_from_first_mm: rows("error_from_first_mm", &limits::POSITION_MM)?,
         caption: object.text_or_empty("caption")?,
         unknown: object.unknown(names::PUBLISHED),
@@ -405,5 +405,5 @@ fn truth(cursor: &Cursor<'_>, mended: &mut Mended) -> Result<Truth, Refusal> {
     // What the truth was written in is of no use to anyone.
     let (flange_from_sensor, _) = pose(&object, pose_name, &mut unknown, mended)?;
     let ball = object.required(ball_name, "the ball's true centre, a list of 3 numbers in mm")?;
-    Ok(Truth { flange_from_sensor, ball_in_base_mm: ball.vec3(&limits::POSITION_MM)?, unknown })
+    Ok(Truth { flange_from_sensor, target_in_base_mm: ball.vec3(&limits::POSITION_MM)?, unknown })
 }

@@ -191,7 +191,7 @@ fn published(out: &mut Writer, published: &Published) {
         out.field("caption").text(&published.caption);
     }
     for (name, rows) in
-        [("ball_in_base_mm", &published.ball_in_base_mm), ("error_from_first_mm", &published.error_from_first_mm)]
+        [("ball_in_base_mm", &published.target_in_base_mm), ("error_from_first_mm", &published.error_from_first_mm)]
     {
         if !rows.is_empty() {
             out.field(name);
@@ -212,7 +212,7 @@ fn truth(out: &mut Writer, truth: &Truth, mount: Mount) {
     out.open(Layout::Lines);
     out.field(pose_name);
     pose(out, &truth.flange_from_sensor, None, nested(&truth.unknown, pose_name));
-    out.field(ball_name).vec3(&truth.ball_in_base_mm);
+    out.field(ball_name).vec3(&truth.target_in_base_mm);
     out.unknown(&truth.unknown, names::TRUTH);
     out.close();
 }

@@ -289,7 +289,7 @@ pub(super) fn read(
             },
         );
         if gathered.num_poses() > num_before {
-            published.ball_in_base_mm.extend(row.triple(CENTRE));
+            published.target_in_base_mm.extend(row.triple(CENTRE));
             published.error_from_first_mm.extend(row.triple(ERROR));
         }
     }
@@ -297,10 +297,10 @@ pub(super) fn read(
         gathered.notes.push(Note::OtherTablesLeftOut { caption: table.caption.clone(), num_tables: tables.num_more });
     }
     let num_stations = gathered.stations.len();
-    for rows in [&mut published.ball_in_base_mm, &mut published.error_from_first_mm] {
+    for rows in [&mut published.target_in_base_mm, &mut published.error_from_first_mm] {
         if rows.len() != num_stations {
             rows.clear();
         }
     }
-    (!published.ball_in_base_mm.is_empty()).then_some(published)
+    (!published.target_in_base_mm.is_empty()).then_some(published)
 }

@@ -253,7 +253,7 @@ impl<'o> Import<'o> {
         }
         if let Some(published) = &mut imported.published {
             // One row a station: beside stations of other sources it fits no more.
-            for rows in [&mut published.ball_in_base_mm, &mut published.error_from_first_mm] {
+            for rows in [&mut published.target_in_base_mm, &mut published.error_from_first_mm] {
                 if rows.len() != gathered.stations.len() {
                     rows.clear();
                 }

@@ -167,7 +167,7 @@ fn numbers(row: &mut RowCells<'_>, widths: &[f32; 8], station: &Row, reference: 
     let shows_tint = station.is_enabled;
     let ground = |error_mm: f64| if shows_tint { tint(error_mm) } else { Color32::TRANSPARENT };
     for axis in 0..3 {
-        let value = used.ball_in_base_mm[axis];
+        let value = used.target_in_base_mm[axis];
         row.number(widths[1 + axis], value, &coordinate(value), Color32::TRANSPARENT);
     }
     for axis in 0..3 {

@@ -26,9 +26,9 @@ pub enum ErrorReference {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UsedStation {
     /// Ball in the sensor frame of the first capture, mm.
-    pub ball_in_sensor_mm: Vec3,
+    pub target_in_sensor_mm: Vec3,
     /// Ball in the base, mm.
-    pub ball_in_base_mm: Vec3,
+    pub target_in_base_mm: Vec3,
     /// Relative to the first station, mm.
     pub error_from_first_mm: Vec3,
     /// Relative to the mean, mm.
@@ -51,8 +51,8 @@ impl UsedStation {
 impl From<&StationSolution> for UsedStation {
     fn from(station: &StationSolution) -> Self {
         Self {
-            ball_in_sensor_mm: station.ball_in_sensor_mm,
-            ball_in_base_mm: station.ball_in_base_mm,
+            target_in_sensor_mm: station.target_in_sensor_mm,
+            target_in_base_mm: station.target_in_base_mm,
             error_from_first_mm: station.error_from_first_mm,
             error_from_mean_mm: station.error_from_mean_mm,
             leave_one_out_mm: station.leave_one_out_mm,
@@ -184,7 +184,7 @@ impl CompareModel {
             columns,
             improvement: compare::improvement(results),
             differences: differences(results),
-            published: session.published.as_ref().filter(|published| !published.ball_in_base_mm.is_empty()).map(
+            published: session.published.as_ref().filter(|published| !published.target_in_base_mm.is_empty()).map(
                 |published| PublishedTable {
                     caption: published.caption.clone(),
                     labels: session.stations.iter().map(|station| station.label.clone()).collect(),

@@ -59,9 +59,10 @@ fn blocks(row: &mut RowCells<'_>, widths: &[f32; 6], station: &Row, reference: E
         row.text(widths[3..].iter().sum(), words);
         return;
     };
-    for (width, point, names) in
-        [(widths[3], used.ball_in_sensor_mm, ["xs", "ys", "zs"]), (widths[4], used.ball_in_base_mm, ["xb", "yb", "zb"])]
-    {
+    for (width, point, names) in [
+        (widths[3], used.target_in_sensor_mm, ["xs", "ys", "zs"]),
+        (widths[4], used.target_in_base_mm, ["xb", "yb", "zb"]),
+    ] {
         let lines = names.into_iter().zip(point.iter().copied());
         block(row, width, faded, lines.map(|(name, value)| (name, value, coordinate(value), false)));
     }

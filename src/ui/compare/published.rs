@@ -45,7 +45,7 @@ pub fn show(ui: &mut Ui, table: &PublishedTable) {
             let label = table.labels.get(row_idx).cloned().unwrap_or_else(|| (row_idx + 1).to_string());
             row.text(widths[0], &label);
             for axis in 0..3 {
-                let value = printed.ball_in_base_mm[axis];
+                let value = printed.target_in_base_mm[axis];
                 row.number(widths[1 + axis], value, &coordinate(value), Color32::TRANSPARENT);
             }
             for axis in 0..3 {

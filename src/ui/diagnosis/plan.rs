@@ -144,7 +144,7 @@ fn standoff(ui: &mut Ui, view: &View<'_>, limits: &mut Limits) {
 fn measured_standoff_mm(view: &View<'_>) -> [f64; 2] {
     let distances = || {
         let stations = view.solution().map_or(&[][..], |solution| &solution.stations);
-        stations.iter().map(|station| station.ball_in_sensor_mm.z)
+        stations.iter().map(|station| station.target_in_sensor_mm.z)
     };
     let (low, high) = (distances().fold(f64::INFINITY, f64::min), distances().fold(f64::NEG_INFINITY, f64::max));
     if low <= high { [low.floor(), high.ceil()] } else { [50.0, 100.0] }

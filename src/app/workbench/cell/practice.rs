@@ -69,7 +69,7 @@ fn session_for(truth: &SimTruth, options: &SimOptions) -> Session {
     session.sensor.reference_distance_mm = Some(truth.reference_distance_mm);
     session.truth = Some(Truth {
         flange_from_sensor: Transform::from_rigid(truth.flange_from_sensor),
-        ball_in_base_mm: truth.ball_in_base,
+        target_in_base_mm: truth.ball_in_base,
         unknown: UnknownFields::new(),
     });
     session

@@ -240,7 +240,7 @@ impl Workbench {
             .collect();
         let [least_z, most_z] = stations
             .iter()
-            .map(|station| station.ball_in_sensor_mm.z)
+            .map(|station| station.target_in_sensor_mm.z)
             .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], z| [least.min(z), most.max(z)]);
         let half_line_mm = first.profile.x_mm().iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let view = View {
@@ -256,7 +256,7 @@ impl Workbench {
         let cell = RoughCell {
             mount: session.mount,
             flange_from_sensor,
-            ball_in_base_mm: Vec3::zeros(),
+            target_in_base_mm: Vec3::zeros(),
             radius_mm,
             noise,
             looks_along_in_base,
