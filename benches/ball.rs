@@ -113,7 +113,7 @@ fn sessions(criterion: &mut Criterion) {
         bencher.iter(|| {
             let measured = measure(black_box(&session_210), None, &mut Unwatched).expect("not cancelled");
             let problem = ball_problem(&session_210, &measured).expect("a ball");
-            solve_all(&problem, &Method::ALL, &mut Unwatched)
+            solve_all(&problem, &Method::BALL, &mut Unwatched)
         });
     });
     let session_20 = session(20, 21, Dirt::default());
@@ -124,7 +124,7 @@ fn sessions(criterion: &mut Criterion) {
             edited.stations[3].enabled = false;
             let measured = measure(&edited, Some(&measured), &mut Unwatched).expect("not cancelled");
             let problem = ball_problem(&edited, &measured).expect("a ball");
-            solve_all(&problem, &Method::ALL, &mut Unwatched)
+            solve_all(&problem, &Method::BALL, &mut Unwatched)
         });
     });
     let json =
@@ -147,10 +147,10 @@ fn studies(criterion: &mut Criterion) {
         bencher.iter(|| {
             let measured = measure(black_box(&session), None, &mut Unwatched).expect("not cancelled");
             let problem = ball_problem(&session, &measured).expect("a ball");
-            solve_all(&problem, &Method::ALL, &mut Unwatched)
+            solve_all(&problem, &Method::BALL, &mut Unwatched)
         });
     });
-    let results = solve_all(&problem, &Method::ALL, &mut Unwatched).expect("not cancelled");
+    let results = solve_all(&problem, &Method::BALL, &mut Unwatched).expect("not cancelled");
     let solution = best_available(&results).expect("solved");
     group.bench_function("20 x 21 x 800, diagnosis and validation", |bencher| {
         let case = Case { session: &session, problem: &problem, results: &results };

@@ -57,7 +57,7 @@ fn scenes() -> Vec<Scene> {
 fn diagnosed(session: &Session) -> (Diagnosis, Duration) {
     let measured = measure(session, None, &mut Unwatched).expect("not cancelled");
     let problem = ball_problem(session, &measured).expect("a ball");
-    let results = solve_all(&problem, &Method::ALL, &mut Unwatched).expect("not cancelled");
+    let results = solve_all(&problem, &Method::BALL, &mut Unwatched).expect("not cancelled");
     let start = Instant::now();
     let diagnosis =
         diagnose(Case { session, problem: &problem, results: &results }, &mut Unwatched).expect("not cancelled");

@@ -13,13 +13,13 @@
 //! | 6 | [`report`] | result files, digits |
 //! | 5 | [`text`] | wording |
 //! | 4 | [`device`], [`diagnose`], [`simulate`] | robots and sensors, the search for the largest arc, the simulated cell · what is wrong with a session, and its remedies · simulated sessions |
-//! | 3 | [`session`], [`plan`] | the document: model, edits, history, table, file format, imports, checks, measuring · where to measure next |
-//! | 2 | [`calibrate`] | hand-eye methods, least squares on SE(3), uncertainty, validation |
-//! | 1 | [`fit`], [`scene`], `sheet` | circle fits and the extraction of arcs · what a laser line sees · numbers in text of any origin |
+//! | 3 | [`session`], [`plan`], [`verify`] | the document: model, edits, history, table, file format, imports, checks, measuring · where to measure next · what a calibration is worth on other data |
+//! | 2 | [`calibrate`], [`scan`] | hand-eye methods, least squares on SE(3), uncertainty, validation · points of a scanned part: clouds, planes, teeth, cylinders |
+//! | 1 | [`fit`], [`scene`], `sheet` | circle fits, the extraction of arcs and edges · what a laser line sees · numbers in text of any origin |
 //! | 0 | [`geometry`], [`watch`] | frames, rotations, conventions, profile, statistics · progress and cancel |
 //!
 //! # Invariants
-//! - `geometry`, `fit`, `calibrate`, `plan` and `diagnose` are pure: no I/O, threads, clock or unseeded randomness. Same input, same bits.
+//! - `geometry`, `fit`, `calibrate`, `plan`, `verify` and `diagnose` are pure: no I/O, threads, clock or unseeded randomness. Same input, same bits.
 //! - Every transform is named `dst_from_src`. Millimetres and radians inside; degrees only at the edges, in the name.
 //! - A poor result is not an error: it is a solution with warnings. An error means that nothing could be computed.
 
@@ -32,10 +32,12 @@ pub mod fit;
 pub mod geometry;
 pub mod plan;
 pub mod report;
+pub mod scan;
 pub mod scene;
 pub mod session;
 mod sheet;
 pub mod simulate;
 pub mod text;
 pub mod ui;
+pub mod verify;
 pub mod watch;

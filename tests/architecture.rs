@@ -5,14 +5,16 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// A module may name only floors below its own.
-const FLOORS: [(&str, u8); 16] = [
+const FLOORS: [(&str, u8); 18] = [
     ("geometry", 0),
     ("watch", 0),
     ("fit", 1),
     ("scene", 1),
     ("sheet", 1),
     ("calibrate", 2),
+    ("scan", 2),
     ("plan", 3),
+    ("verify", 3),
     ("session", 3),
     ("device", 4),
     ("diagnose", 4),
@@ -25,7 +27,7 @@ const FLOORS: [(&str, u8); 16] = [
 ];
 
 /// Floors without I/O, threads, clock, log or serde: same input, same bits.
-const PURE: [&str; 5] = ["geometry", "fit", "calibrate", "plan", "diagnose"];
+const PURE: [&str; 6] = ["geometry", "fit", "calibrate", "plan", "verify", "diagnose"];
 const IMPURE_NAMES: [&str; 7] = ["std::fs", "std::thread", "std::time", "std::io", "serde", "log::", "rand_core"];
 
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {

@@ -23,7 +23,7 @@ fn sections(mount: Mount, seed: u64) -> SimulationOptions {
 fn solved(session: &Session) -> (Diagnosis, Vec<MethodResult>) {
     let measured = measure(session, None, &mut Unwatched).expect("not cancelled");
     let problem = ball_problem(session, &measured).expect("a ball");
-    let results = solve_all(&problem, &Method::ALL, &mut Unwatched).expect("not cancelled");
+    let results = solve_all(&problem, &Method::BALL, &mut Unwatched).expect("not cancelled");
     let case = Case { session, problem: &problem, results: &results };
     (diagnose(case, &mut Unwatched).expect("not cancelled"), results)
 }

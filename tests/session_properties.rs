@@ -7,7 +7,7 @@ use handeye::calibrate::{Mount, Side, SideChoice};
 use handeye::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
 use handeye::geometry::{Base, Flange, PoseConvention, PoseNotation, Profile, Transform, Vec3, so3};
 use handeye::session::{
-    Capture, Published, Reading, Robot, Sensor, Session, Station, Target, Truth, WrittenAngles, parse, to_json,
+    Capture, Known, Published, Reading, Robot, Sensor, Session, Station, Target, Truth, WrittenAngles, parse, to_json,
 };
 use proptest::prelude::*;
 
@@ -106,12 +106,15 @@ prop_compose! {
             robot: Robot { position_std_mm, notation, ..Robot::default() },
             sensor: Sensor::default(),
             target: Target::Ball { radius_mm, radius_std_mm: position_std_mm },
+            known: Known::default(),
+            further: Vec::new(),
             mount: if is_fixed { Mount::Fixed } else { Mount::OnFlange },
             stations,
             published,
             truth: true_pose.map(|pose| Truth {
                 flange_from_sensor: Transform::from_rigid(*pose.rigid()),
                 target_in_base_mm: Vec3::new(1.0, 2.0, 0.3),
+                base_from_plate: None,
                 unknown: serde_json::Map::new(),
             }),
             unknown,

@@ -2,7 +2,9 @@
 
 use thiserror::Error;
 
-use crate::fit::ArcRefusal;
+use crate::fit::Refusal;
+
+use super::Method;
 
 /// Why a method computed nothing. Everything short of that is a [`super::Warning`] in the solution.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -19,7 +21,7 @@ pub enum SolveError {
         /// The least number that will do.
         needed: usize,
         /// Why the first of the others cannot be used.
-        refusal: Option<ArcRefusal>,
+        refusal: Option<Refusal>,
     },
     /// The bundle needs the points, not reduced centres.
     #[error(
@@ -34,7 +36,7 @@ pub enum SolveError {
         /// The least number that will do.
         needed: usize,
         /// Why the first of the others cannot be used.
-        refusal: Option<ArcRefusal>,
+        refusal: Option<Refusal>,
     },
     /// A largest-arc method without steps to look at.
     #[error(
@@ -51,7 +53,7 @@ pub enum SolveError {
         /// Profiles that make a sweep.
         steps: usize,
         /// Why the first of the others cannot be used.
-        refusal: Option<ArcRefusal>,
+        refusal: Option<Refusal>,
     },
     /// All orientations are the same, so a shift of the sensor cannot be told from a shift of the ball.
     #[error(
@@ -84,6 +86,30 @@ pub enum SolveError {
         /// Condition number of the scaled normal equations.
         condition: f64,
     },
+    /// The method is for another target.
+    #[error("{method} is not for this target; {available} {are}", method = method.id(), available = listed(available), are = if available.len() == 1 { "is" } else { "are" })]
+    OtherTarget {
+        /// The method.
+        method: Method,
+        /// Those for the target.
+        available: &'static [Method],
+    },
+    /// Two lines in space and a sensor on the flange need more.
+    #[error(
+        "found {found_p} points on edge p and {found_q} on edge q; at least {needed} on each are needed, with different \
+         orientations{because}",
+        because = because(refusal.as_ref())
+    )]
+    TooFewEdgePoints {
+        /// Points on edge p.
+        found_p: usize,
+        /// Points on edge q.
+        found_q: usize,
+        /// The least number on each.
+        needed: usize,
+        /// Why the first of the others cannot be used.
+        refusal: Option<Refusal>,
+    },
     /// No start led to a finite solution.
     #[error("the solver found no finite solution; check poses and units")]
     Diverged,
@@ -93,6 +119,10 @@ const fn plural(count: usize) -> &'static str {
     if count == 1 { "" } else { "s" }
 }
 
-fn because(refusal: Option<&ArcRefusal>) -> String {
+fn because(refusal: Option<&Refusal>) -> String {
     refusal.map_or_else(String::new, |refusal| format!(". A profile is left out because: {refusal}"))
+}
+
+fn listed(methods: &[Method]) -> String {
+    methods.iter().map(|method| method.id()).collect::<Vec<_>>().join(", ")
 }

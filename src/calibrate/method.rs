@@ -16,11 +16,41 @@ pub enum Method {
     BallMaxArc,
     /// All points of all profiles at once.
     BallBundle,
+    /// Chen et al. 2023 §3: the difference vectors of the two edges, perpendicular to each other.
+    PlateOrthogonal,
+    /// All edge points on two lines that meet at a right angle.
+    PlateBundle,
+    /// A tip or pin that the laser line touches from several poses.
+    FixedPoint,
 }
 
 impl Method {
     /// All methods, in the order in which they are shown.
-    pub const ALL: [Self; 4] = [Self::BallFixedPoint, Self::BallMaxArcStep, Self::BallMaxArc, Self::BallBundle];
+    pub const ALL: [Self; 7] = [
+        Self::BallFixedPoint,
+        Self::BallMaxArcStep,
+        Self::BallMaxArc,
+        Self::BallBundle,
+        Self::PlateOrthogonal,
+        Self::PlateBundle,
+        Self::FixedPoint,
+    ];
+    /// All of them, the one whose answer is to be used first.
+    pub const BEST_FIRST: [Self; 7] = [
+        Self::BallBundle,
+        Self::BallMaxArc,
+        Self::BallFixedPoint,
+        Self::BallMaxArcStep,
+        Self::PlateBundle,
+        Self::PlateOrthogonal,
+        Self::FixedPoint,
+    ];
+    /// Those for a ball.
+    pub const BALL: [Self; 4] = [Self::BallFixedPoint, Self::BallMaxArcStep, Self::BallMaxArc, Self::BallBundle];
+    /// Those for a right-angle plate.
+    pub const PLATE: [Self; 2] = [Self::PlateOrthogonal, Self::PlateBundle];
+    /// That for a tip.
+    pub const POINT: [Self; 1] = [Self::FixedPoint];
 
     /// The name in files and on the command line.
     #[must_use]
@@ -30,6 +60,9 @@ impl Method {
             Self::BallMaxArcStep => "ball-max-arc-step",
             Self::BallMaxArc => "ball-max-arc",
             Self::BallBundle => "ball-bundle",
+            Self::PlateOrthogonal => "plate-orthogonal",
+            Self::PlateBundle => "plate-bundle",
+            Self::FixedPoint => "fixed-point",
         }
     }
 
@@ -49,20 +82,23 @@ pub struct MethodResult {
     pub outcome: Result<Solution, SolveError>,
 }
 
-/// Runs one method.
+/// Runs one method for the ball.
 ///
 /// # Errors
-/// [`SolveError`] if nothing can be computed from this problem. A poor result is a solution with warnings.
+/// [`SolveError`] if nothing can be computed from this problem, or if the method is for another target. A poor result is a solution with warnings.
 pub fn solve(problem: &BallProblem, method: Method) -> Result<Solution, SolveError> {
     match method {
         Method::BallFixedPoint => ball::fixed_point::solve(problem),
         Method::BallMaxArcStep => ball::max_arc_step::solve(problem),
         Method::BallMaxArc => ball::max_arc::solve(problem),
         Method::BallBundle => ball::bundle::solve(problem),
+        Method::PlateOrthogonal | Method::PlateBundle | Method::FixedPoint => {
+            Err(SolveError::OtherTarget { method, available: &Method::BALL })
+        }
     }
 }
 
-/// Runs the given methods in their order.
+/// Runs the given methods for the ball in their order.
 ///
 /// # Errors
 /// [`Cancelled`] if `watch` says so between two methods.
@@ -90,11 +126,7 @@ pub fn solution_of(results: &[MethodResult], method: Method) -> Option<&Solution
 /// did not settle only if none did.
 #[must_use]
 pub fn best_available(results: &[MethodResult]) -> Option<&Solution> {
-    let solutions = || {
-        [Method::BallBundle, Method::BallMaxArc, Method::BallFixedPoint, Method::BallMaxArcStep]
-            .into_iter()
-            .filter_map(|method| solution_of(results, method))
-    };
+    let solutions = || Method::BEST_FIRST.into_iter().filter_map(|method| solution_of(results, method));
     let has_settled =
         |solution: &&Solution| !solution.warnings.iter().any(|warning| matches!(warning, Warning::NotConverged { .. }));
     solutions().find(has_settled).or_else(|| solutions().next())

@@ -11,6 +11,7 @@ pub mod ball;
 pub mod error;
 pub mod method;
 pub mod observation;
+pub mod plate;
 pub mod problem;
 pub mod reduced;
 pub mod rotation_start;
@@ -23,10 +24,13 @@ pub mod warning;
 
 pub use error::SolveError;
 pub use method::{Method, MethodResult, best_available, solution_of, solve, solve_all};
-pub use problem::{BallProblem, Capture, Mount, Noise, Reading, Side, SideChoice, Station};
+pub use problem::{
+    BallProblem, Capture, Edge, Mount, Noise, PlateProblem, PlateStation, Problem, Reading, Side, SideChoice, Station,
+};
 pub use reduced::Reduced;
 pub use solution::{
-    AboveStated, EstimatedRadius, NoiseModel, RmsMax, Solution, StationSolution, Sweep, SweepPoint, Uncertainty,
+    AboveStated, EstimatedRadius, NoiseModel, PlateFound, PlatePoint, RmsMax, Solution, Starts, StationSolution, Sweep,
+    SweepPoint, Uncertainty,
 };
 pub use verdict::{Verdict, VerdictReason};
 pub use warning::Warning;

@@ -1,9 +1,12 @@
-//! What a ball method is given: stations with their captures, already reduced from profiles to arcs.
+//! What a method is given: stations with their captures, already reduced from profiles to arcs or edge points.
 
 use std::sync::Arc;
 
-use crate::fit::{ArcFit, ArcRefusal};
-use crate::geometry::{Base, Flange, Transform, Vec3};
+use crate::fit::{ArcFit, EdgeFit, Refusal};
+use crate::geometry::{Base, Flange, Sensor, Transform, Vec3};
+use crate::watch::{Cancelled, Watch};
+
+use super::{Method, MethodResult, Solution, SolveError, ball, plate};
 
 /// Where the sensor is mounted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -63,15 +66,38 @@ pub enum SideChoice {
     Given(Side),
 }
 
-/// What one capture says about the ball.
+/// Which edge of the right-angle plate a station saw.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Edge {
+    /// The edge p.
+    P,
+    /// The edge q.
+    Q,
+}
+
+/// What one capture says about the target.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reading {
     /// The ball's section in the laser plane.
     Arc(Arc<ArcFit>),
+    /// The point where the laser line crosses a plate's edge, or a tip.
+    Edge(Arc<EdgeFit>),
     /// The profile was refused, and why.
-    Refused(ArcRefusal),
-    /// The ball's centre in the sensor frame, already reduced elsewhere, mm.
+    Refused(Refusal),
+    /// Already reduced elsewhere, in the sensor frame, mm: the ball's centre, a point on an edge, or the tip.
     Point(Vec3),
+}
+
+impl Reading {
+    /// The point of an edge or tip in the sensor frame, mm; none of a ball's arc.
+    #[must_use]
+    pub fn point_in_sensor_mm(&self) -> Option<Vec3> {
+        match self {
+            Self::Edge(edge) => Some(Vec3::new(edge.point_mm[0], 0.0, edge.point_mm[1])),
+            Self::Point(point) => Some(*point),
+            Self::Arc(_) | Self::Refused(_) => None,
+        }
+    }
 }
 
 /// One pose of the robot with what was measured there.
@@ -85,7 +111,7 @@ pub struct Capture {
     pub reading: Reading,
 }
 
-/// A place of the robot; its first capture is where the line first struck the ball, the rest are the steps.
+/// A place of the robot; with a ball, its first capture is where the line first struck it, the rest are the steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Station {
     /// The caller's index of this station, carried through to the solution.
@@ -122,4 +148,90 @@ pub struct BallProblem {
     pub reference_distance_mm: Option<f64>,
     /// The stations to be used.
     pub stations: Vec<Station>,
+}
+
+/// A station at the plate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlateStation {
+    /// The edge that the line crossed.
+    pub edge: Edge,
+    /// The captures, all of that edge.
+    pub station: Station,
+}
+
+/// A calibration from the two edges of a right-angle plate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlateProblem {
+    /// Where the sensor is. For [`Mount::Fixed`] the captures hold the inverted poses.
+    pub mount: Mount,
+    /// Noise of the robot, where it is known.
+    pub noise: Noise,
+    /// Noise of a point of a profile, mm, where it is known.
+    pub profile_std_mm: Option<f64>,
+    /// The distance along z for which the headline accuracy is stated, mm; without it, that of the points seen.
+    pub reference_distance_mm: Option<f64>,
+    /// Roughly how the sensor is mounted, as the operator says; without it many starts are tried.
+    pub rough_flange_from_sensor: Option<Transform<Flange, Sensor>>,
+    /// The stations to be used.
+    pub stations: Vec<PlateStation>,
+}
+
+/// A calibration from whatever the target is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Problem {
+    /// From a ball of known radius.
+    Ball(BallProblem),
+    /// From a tip or pin, which is a ball without size: every reading is a point, and the radius is zero.
+    Point(BallProblem),
+    /// From a right-angle plate.
+    Plate(PlateProblem),
+}
+
+impl Problem {
+    /// The methods for this target, in the order in which they are shown.
+    #[must_use]
+    pub const fn methods(&self) -> &'static [Method] {
+        match self {
+            Self::Ball(_) => &Method::BALL,
+            Self::Point(_) => &Method::POINT,
+            Self::Plate(_) => &Method::PLATE,
+        }
+    }
+
+    /// The ball's problem, for what only balls have.
+    #[must_use]
+    pub const fn as_ball(&self) -> Option<&BallProblem> {
+        match self {
+            Self::Ball(ball) => Some(ball),
+            Self::Point(_) | Self::Plate(_) => None,
+        }
+    }
+
+    /// Runs one method.
+    ///
+    /// # Errors
+    /// [`SolveError`] if nothing can be computed, or if the method is for another target.
+    pub fn solve(&self, method: Method) -> Result<Solution, SolveError> {
+        if !self.methods().contains(&method) {
+            return Err(SolveError::OtherTarget { method, available: self.methods() });
+        }
+        match self {
+            Self::Ball(ball) => super::solve(ball, method),
+            Self::Point(point) => ball::fixed_point::solve(point).map(|found| Solution { method, ..found }),
+            Self::Plate(plate) => plate::solve(plate, method),
+        }
+    }
+
+    /// Runs the given methods in their order.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `watch` says so between two methods.
+    pub fn solve_all(&self, methods: &[Method], watch: &mut dyn Watch) -> Result<Vec<MethodResult>, Cancelled> {
+        let mut results = Vec::with_capacity(methods.len());
+        for &method in methods {
+            watch.report(results.len(), methods.len())?;
+            results.push(MethodResult { method, outcome: self.solve(method) });
+        }
+        Ok(results)
+    }
 }

@@ -2,9 +2,9 @@
 
 use nalgebra::{Matrix6, Vector6};
 
-use crate::geometry::{Flange, Mat3, Sensor, Transform, Vec3};
+use crate::geometry::{Flange, Mat3, Rigid, Sensor, Transform, Vec3};
 
-use super::{Method, Mount, Reduced, Side, Warning};
+use super::{Edge, Method, Mount, Reduced, Side, Warning};
 
 /// Root mean square and maximum of some distances, mm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -159,6 +159,48 @@ pub struct StationSolution {
     pub sweep: Option<Sweep>,
 }
 
+/// A point on an edge of the plate, through the calibration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlatePoint {
+    /// The caller's index of its station, as in [`super::Station::idx`].
+    pub station_idx: usize,
+    /// Its capture in that station.
+    pub capture_idx: usize,
+    /// The station's name.
+    pub label: String,
+    /// The edge that it is on.
+    pub edge: Edge,
+    /// In the sensor frame, mm.
+    pub point_in_sensor_mm: Vec3,
+    /// Through the calibration, in the base, mm.
+    pub point_in_base_mm: Vec3,
+    /// From the nearest point of its edge to the point, in the base, mm.
+    pub off_edge_mm: Vec3,
+    /// Its distance from the edge of the solution made without its station, mm.
+    pub leave_one_out_mm: Option<f64>,
+}
+
+/// How the starts of a search fared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Starts {
+    /// Starts tried.
+    pub num_tried: usize,
+    /// Those that ended in the solution.
+    pub num_agreed: usize,
+}
+
+/// The plate in the base, and the points on it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlateFound {
+    /// Where the plate is: the origin in its corner, x along edge p, y along edge q, z normal to it; as the method has it,
+    /// or fitted to its points where it has none.
+    pub base_from_plate: Rigid,
+    /// One entry a point used, in the order of stations and captures.
+    pub points: Vec<PlatePoint>,
+    /// How many starts there were, and how many led here.
+    pub starts: Starts,
+}
+
 /// A calibration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
@@ -168,16 +210,18 @@ pub struct Solution {
     pub mount: Mount,
     /// The hand-eye calibration.
     pub flange_from_sensor: Transform<Flange, Sensor>,
-    /// The ball's centre, mm.
+    /// The target's point, mm: the ball's centre, the tip, or the corner where the plate's edges meet.
     pub target_in_base_mm: Vec3,
-    /// Distances of the stations' balls from `target_in_base_mm`, in sample.
+    /// Distances of the stations' balls or tips from `target_in_base_mm`, or of the points from their edges; in sample.
     pub scatter: RmsMax,
     /// Distances with each station predicted by the others; `None` where too few stations remain for that.
     pub leave_one_out: Option<RmsMax>,
     /// How well the result is known; `None` where nothing is left over to judge by.
     pub uncertainty: Option<Uncertainty>,
-    /// One entry a station used, in order.
+    /// One entry a station used, in order; none for a plate, whose points are in `plate`.
     pub stations: Vec<StationSolution>,
+    /// The plate that was found, for its methods.
+    pub plate: Option<PlateFound>,
     /// Angle of the largest rotation between two poses, rad.
     pub rotation_span_rad: f64,
     /// What the user should know.
@@ -188,8 +232,8 @@ pub struct Solution {
     pub noise: Option<NoiseModel>,
     /// The ball's radius where it was estimated as well.
     pub radius: Option<EstimatedRadius>,
-    /// The data at the minimum, for validation, diagnosis and planning.
-    pub reduced: Reduced,
+    /// The data at the minimum, for validation, diagnosis and planning; `None` for a plate.
+    pub reduced: Option<Reduced>,
     /// How the result follows the ball's radius: change of (rotation about the sensor's axes in rad, translation along the
     /// flange's axes in mm) a mm of radius.
     pub change_by_radius: Vector6<f64>,

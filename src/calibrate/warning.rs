@@ -1,6 +1,6 @@
 //! What a user should know about a result: facts here, wording in [`crate::text`].
 
-use crate::fit::ArcRefusal;
+use crate::fit::Refusal;
 
 /// Something about a result that the user should know. Sentence and remedy come from [`crate::text`].
 #[derive(Clone, Debug, PartialEq)]
@@ -60,7 +60,7 @@ pub enum Warning {
         /// Capture, from 0.
         capture_idx: usize,
         /// Why.
-        reason: ArcRefusal,
+        reason: Refusal,
         /// How many more were refused.
         num_others: usize,
     },

@@ -4,10 +4,10 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use crate::calibrate::{Method, Warning, solve};
+use crate::calibrate::Warning;
 use crate::session::check::{Finding, findings};
 use crate::session::format::{Loaded, load_with_notes};
-use crate::session::{Session, ball_problem, measure};
+use crate::session::{self, Session, measure};
 use crate::text::check::finding_message;
 use crate::text::warning_message;
 use crate::watch::Unwatched;
@@ -69,11 +69,11 @@ pub fn listing(loaded: &Loaded) -> String {
 /// when solved.
 fn outcome_of_all_methods(session: &Session) -> (Vec<Warning>, Option<String>) {
     let Ok(measured) = measure(session, None, &mut Unwatched) else { return (Vec::new(), None) };
-    let problem = match ball_problem(session, &measured) {
+    let problem = match session::problem(session, &measured) {
         Ok(problem) => problem,
         Err(refusal) => return (Vec::new(), Some(refusal.to_string())),
     };
-    let outcomes = Method::ALL.map(|method| solve(&problem, method));
+    let outcomes: Vec<_> = problem.methods().iter().map(|method| problem.solve(*method)).collect();
     let failure = outcomes[0].as_ref().err().filter(|_| outcomes.iter().all(Result::is_err)).map(ToString::to_string);
     let mut warnings: Vec<Warning> = Vec::new();
     for solution in outcomes.into_iter().flatten() {

@@ -86,7 +86,7 @@ pub fn run(args: &PlanArgs) -> ExitCode {
 fn planned(args: &PlanArgs, session: &Session) -> Result<(Plan, Option<Method>), String> {
     let measured = measure(session, None, &mut Unwatched).map_err(|cancelled| cancelled.to_string())?;
     let problem = ball_problem(session, &measured).map_err(|refusal| refusal.to_string())?;
-    let results = solve_all(&problem, &Method::ALL, &mut Unwatched).map_err(|cancelled| cancelled.to_string())?;
+    let results = solve_all(&problem, &Method::BALL, &mut Unwatched).map_err(|cancelled| cancelled.to_string())?;
     let num = usize::from(args.stations);
     let limits = limits(args);
     if let Some(solution) = best_available(&results) {

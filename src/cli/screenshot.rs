@@ -48,6 +48,8 @@ pub enum StepName {
     Compare,
     /// Findings, validation and the next poses
     Diagnosis,
+    /// What the calibration is worth on other data
+    Verify,
 }
 
 /// The themes by their names on the command line.
@@ -77,6 +79,7 @@ impl From<StepName> for Step {
             StepName::Poses => Self::Poses,
             StepName::Compare => Self::Compare,
             StepName::Diagnosis => Self::Diagnosis,
+            StepName::Verify => Self::Verify,
         }
     }
 }

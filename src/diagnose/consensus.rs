@@ -167,7 +167,7 @@ impl<'a> Stations<'a> {
             covariance,
         };
         match &capture.reading {
-            Reading::Refused(_) => None,
+            Reading::Edge(_) | Reading::Refused(_) => None,
             Reading::Point(point) => Some(of_centre(*point, false, Mat3::zeros())),
             Reading::Arc(arc) => {
                 let [std_x, std_z, std_l] = arc.std_mm();
@@ -208,7 +208,7 @@ impl<'a> Stations<'a> {
                     let travel = self.direction.dot(&travel_in_flange(self.problem.mount, from, pose));
                     Some((travel, arc.circle.radius_mm, arc.std_mm()[2]))
                 }
-                Reading::Refused(_) | Reading::Point(_) => None,
+                Reading::Edge(_) | Reading::Refused(_) | Reading::Point(_) => None,
             })
             .collect();
         #[expect(clippy::cast_precision_loss, reason = "a sweep has few steps")]
@@ -379,7 +379,7 @@ impl<'a> Stations<'a> {
         if self.readings.iter().any(|reading| reading.side_is_open) {
             let stations = self.readings.iter().map(single_capture_station).collect();
             let problem = BallProblem { stations, ..self.problem.clone() };
-            return solve(&problem, Method::BallFixedPoint).ok().map(|solution| solution.reduced.state);
+            return solve(&problem, Method::BallFixedPoint).ok().and_then(|solution| Some(solution.reduced?.state));
         }
         let all: Vec<usize> = (0..self.readings.len()).collect();
         self.starts(&all).pop()

@@ -9,6 +9,7 @@ pub mod convention;
 pub mod finding;
 pub mod geometry;
 pub mod hypotheses;
+mod methods;
 mod model;
 pub mod remedy;
 pub mod stations;
@@ -21,7 +22,7 @@ pub use remedy::Remedy;
 pub use verdict::{Reason, verdict_with};
 
 use crate::calibrate::validation::{Validation, validate};
-use crate::calibrate::{BallProblem, MethodResult, best_available};
+use crate::calibrate::{BallProblem, MethodResult, Problem, best_available};
 use crate::session::Session;
 use crate::watch::{Cancelled, Watch};
 
@@ -87,6 +88,26 @@ pub fn diagnose(case: Case<'_>, watch: &mut dyn Watch) -> Result<Diagnosis, Canc
     let validation = best_available(case.results).and_then(validate);
     let findings = weighing::with_warnings(case, causes, validation.as_ref());
     Ok(Diagnosis { findings, readings, validation })
+}
+
+/// Examines a session with any target and its results. What only a ball's arcs can tell is asked of balls alone; the
+/// findings of other targets are what their methods say.
+///
+/// # Errors
+/// [`Cancelled`] if `watch` says so.
+pub fn diagnose_any(
+    session: &Session,
+    problem: &Problem,
+    results: &[MethodResult],
+    watch: &mut dyn Watch,
+) -> Result<Diagnosis, Cancelled> {
+    match problem {
+        Problem::Ball(problem) => diagnose(Case { session, problem, results }, watch),
+        Problem::Point(_) | Problem::Plate(_) => {
+            watch.report(0, 1)?;
+            Ok(methods::examine(results))
+        }
+    }
 }
 
 /// What the quick examinations find, the poses read as they are.

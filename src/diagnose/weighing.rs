@@ -158,11 +158,12 @@ fn is_same(a: &Fault, b: &Fault) -> bool {
 /// one does.
 fn weigh_stations(case: Case<'_>, findings: &mut Vec<Finding>) {
     let Some(first) = findings.iter().find(|finding| is_about_stations(&finding.fault)) else { return };
-    let as_given = best_available(case.results).and_then(|best| residual_mm(case.problem, best.reduced.state));
+    let as_given =
+        best_available(case.results).and_then(|best| residual_mm(case.problem, best.reduced.as_ref()?.state));
     let mended = mended_session(case.session, first, findings);
     let after = problem_of(&mended).and_then(|problem| {
         let solved = [Method::BallBundle, Method::BallFixedPoint].map(|method| solve(&problem, method).ok());
-        residual_mm(&problem, solved.into_iter().flatten().next()?.reduced.state)
+        residual_mm(&problem, solved.into_iter().flatten().next()?.reduced?.state)
     });
     let (Some(as_given), Some(after)) = (as_given, after) else { return };
     if as_given < STANDS_OUT_FROM * after {
@@ -194,7 +195,7 @@ impl Mended {
         first.remedy.as_ref().filter(|_| first.explains > MENDS_FROM)?;
         let session = mended_session(case.session, first, findings);
         let problem = problem_of(&session)?;
-        let results = solve_all(&problem, &Method::ALL, &mut Unwatched).ok()?;
+        let results = solve_all(&problem, &Method::BALL, &mut Unwatched).ok()?;
         Some(Self { session, problem, results })
     }
 

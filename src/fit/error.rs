@@ -1,6 +1,8 @@
-//! Why a circle could not be fitted, or a profile holds no usable arc.
+//! Why a circle could not be fitted, or a profile holds no usable arc or edge.
 
 use thiserror::Error;
+
+use super::Feature;
 
 /// Why a set of points has no circle.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -68,4 +70,46 @@ pub enum ArcRefusal {
     /// The circle could not be fitted.
     #[error(transparent)]
     Fit(#[from] FitError),
+}
+
+/// Why a profile holds no usable edge.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum EdgeRefusal {
+    /// Next to nothing was measured.
+    #[error("found {found} valid points; an edge needs at least {needed}. Move the plate into the sensor's range")]
+    TooFewPoints {
+        /// Number of valid points.
+        found: usize,
+        /// The least number that will do.
+        needed: usize,
+    },
+    /// Nothing in the profile looks like what was asked for.
+    #[error("no {name} found among {num_points} points. Check that the line crosses it", name = name(*feature))]
+    NoFeature {
+        /// What was looked for.
+        feature: Option<Feature>,
+        /// Number of valid points searched.
+        num_points: usize,
+    },
+}
+
+const fn name(feature: Option<Feature>) -> &'static str {
+    match feature {
+        None => "edge, corner or step",
+        Some(Feature::Edge) => "edge",
+        Some(Feature::Corner) => "corner",
+        Some(Feature::Step) => "step",
+        Some(Feature::Tip) => "tip",
+    }
+}
+
+/// Why a profile does not show its target.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum Refusal {
+    /// No arc of a ball.
+    #[error(transparent)]
+    Arc(#[from] ArcRefusal),
+    /// No edge of a plate, and no tip.
+    #[error(transparent)]
+    Edge(#[from] EdgeRefusal),
 }

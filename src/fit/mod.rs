@@ -6,6 +6,7 @@
 pub mod algebraic;
 pub mod arc;
 pub mod circle;
+pub mod edge;
 pub mod error;
 pub mod geometric;
 pub mod ransac;
@@ -14,4 +15,5 @@ pub(crate) mod sums;
 
 pub use arc::{ArcFit, ArcOptions, PointClass, extract_arc};
 pub use circle::{Circle, CircleFit, CircleMethod};
-pub use error::{ArcRefusal, FitError};
+pub use edge::{EdgeFit, EdgeOptions, Feature, Flank, extract_edge};
+pub use error::{ArcRefusal, EdgeRefusal, FitError, Refusal};

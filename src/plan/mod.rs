@@ -114,7 +114,7 @@ pub fn next_stations(
     limits: &Limits,
     num: usize,
 ) -> Result<Plan, PlanRefusal> {
-    let reduced = &solution.reduced;
+    let reduced = solution.reduced.as_ref().ok_or(PlanRefusal::Undetermined)?;
     let orientations = Orientations::about_mean_of(reduced, limits)?;
     let reference_point = solution
         .uncertainty

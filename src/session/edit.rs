@@ -553,7 +553,7 @@ fn set_target(session: &mut Session, target: &Target) -> Result<(), EditRefusal>
         Target::Rgbd { sequence } if sequence.trim().is_empty() || Path::new(sequence).is_absolute() => {
             return Err(EditRefusal::NotASequence { found: sequence.clone() });
         }
-        Target::Point | Target::Rgbd { .. } => {}
+        Target::Point | Target::Workpiece | Target::Rgbd { .. } => {}
     }
     if std::mem::discriminant(target) != std::mem::discriminant(&session.target) {
         // The truth is a ball's, and what else the file said was said of the other kind.

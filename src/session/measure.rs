@@ -1,15 +1,15 @@
-//! From a session's profiles to arcs, and from these to the problem that the methods solve.
+//! From a session's profiles to arcs and edge points, and from these to the problem that the methods solve.
 
 use std::sync::Arc;
 
 use thiserror::Error;
 
-use crate::calibrate::{self, BallProblem, Mount, Noise};
-use crate::fit::{ArcFit, ArcOptions, ArcRefusal, extract_arc};
+use crate::calibrate::{self, BallProblem, Mount, Noise, PlateProblem, PlateStation, Problem};
+use crate::fit::{ArcOptions, ArcRefusal, EdgeOptions, Feature, Refusal, extract_arc, extract_edge};
 use crate::geometry::{Profile, Transform};
 use crate::watch::{Cancelled, Watch};
 
-use super::{Reading, Session, Target};
+use super::{FurtherTarget, Reading, Session, Station, Target};
 
 /// Why a session is none for the ball methods.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
@@ -21,47 +21,135 @@ pub struct NotABallSession {
     pub kind: &'static str,
 }
 
+/// Why no method computes a calibration from a target.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+pub enum NothingToSolve {
+    /// A workpiece is measured with a calibration, not for one.
+    #[error("the session's target is a workpiece: it shows what a calibration is worth, but none is computed from it")]
+    Workpiece,
+    /// Another command's.
+    #[error("the session's target is an RGB-D sequence, from which this version computes no calibration")]
+    Rgbd,
+}
+
+/// What is looked for in the profiles of a target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Search {
+    Arc(ArcOptions),
+    Edge(EdgeOptions),
+    /// The profiles are the result.
+    Nothing,
+}
+
+impl Search {
+    fn of(target: &Target, profile_std_mm: Option<f64>) -> Self {
+        match target {
+            Target::Ball { radius_mm, .. } => Self::Arc(ArcOptions { ball_radius_mm: *radius_mm, profile_std_mm }),
+            Target::RightAnglePlate => Self::Edge(EdgeOptions { feature: None, profile_std_mm }),
+            Target::Point => Self::Edge(EdgeOptions { feature: Some(Feature::Tip), profile_std_mm }),
+            Target::Workpiece | Target::Rgbd { .. } => Self::Nothing,
+        }
+    }
+
+    fn reading(&self, profile: &Profile) -> calibrate::Reading {
+        let refused = |refusal: Refusal| calibrate::Reading::Refused(refusal);
+        match self {
+            Self::Arc(options) => extract_arc(profile, options)
+                .map_or_else(|refusal| refused(refusal.into()), |arc| calibrate::Reading::Arc(Arc::new(arc))),
+            Self::Edge(options) => extract_edge(profile, options)
+                .map_or_else(|refusal| refused(refusal.into()), |edge| calibrate::Reading::Edge(Arc::new(edge))),
+            Self::Nothing => refused(ArcRefusal::NoBall.into()),
+        }
+    }
+}
+
 #[derive(Clone, Debug)]
 struct MeasuredCapture {
     profile: Option<Arc<Profile>>,
     reading: calibrate::Reading,
 }
 
-/// The readings of all captures of a session, enabled or not: the arcs extracted from its profiles.
+/// The readings of one target's captures, enabled or not.
+#[derive(Clone, Debug)]
+struct MeasuredTarget {
+    search: Search,
+    stations: Vec<Vec<MeasuredCapture>>,
+}
+
+/// The readings of all captures of a session, enabled or not: what was found in its profiles.
 #[derive(Clone, Debug)]
 pub struct Measured {
-    options: ArcOptions,
-    stations: Vec<Vec<MeasuredCapture>>,
+    target: MeasuredTarget,
+    further: Vec<MeasuredTarget>,
 }
 
 impl Measured {
     /// What was found in a capture.
     #[must_use]
     pub fn reading(&self, station_idx: usize, capture_idx: usize) -> Option<&calibrate::Reading> {
+        self.target.reading(station_idx, capture_idx)
+    }
+
+    /// What was found in a capture of a further target.
+    #[must_use]
+    pub fn further_reading(
+        &self,
+        further_idx: usize,
+        station_idx: usize,
+        capture_idx: usize,
+    ) -> Option<&calibrate::Reading> {
+        self.further.get(further_idx)?.reading(station_idx, capture_idx)
+    }
+}
+
+impl MeasuredTarget {
+    fn reading(&self, station_idx: usize, capture_idx: usize) -> Option<&calibrate::Reading> {
         self.stations.get(station_idx)?.get(capture_idx).map(|capture| &capture.reading)
     }
 }
 
-/// Extracts the arcs of all profiles; those that `previous` already holds are taken over.
+/// Looks for arcs or edges in all profiles; what `previous` already holds is taken over.
 ///
 /// # Errors
-/// [`Cancelled`] if `watch` says so. [`NotABallSession`] is answered by [`ball_problem`], so here another target
-/// merely gives no arcs.
+/// [`Cancelled`] if `watch` says so.
 pub fn measure(session: &Session, previous: Option<&Measured>, watch: &mut dyn Watch) -> Result<Measured, Cancelled> {
-    let ball_radius_mm = match session.target {
-        Target::Ball { radius_mm, .. } => radius_mm,
-        _ => 0.0,
-    };
-    let options = ArcOptions { ball_radius_mm, profile_std_mm: session.sensor.profile_std_mm };
-    let previous = previous.filter(|measured| measured.options == options);
-    let total = session.num_captures();
+    let of_further = session.further.iter().flat_map(|further| &further.stations);
+    let total = session.num_captures() + of_further.map(|station| station.captures.len()).sum::<usize>();
     let mut done = 0;
-    let mut stations = Vec::with_capacity(session.stations.len());
-    for (station_idx, station) in session.stations.iter().enumerate() {
+    let mut step = || {
+        watch.report(done, total)?;
+        done += 1;
+        Ok(())
+    };
+    let std_mm = session.sensor.profile_std_mm;
+    let known = previous.map(|measured| &measured.target);
+    let target = measure_target(&session.target, &session.stations, std_mm, known, &mut step)?;
+    let further = session
+        .further
+        .iter()
+        .enumerate()
+        .map(|(idx, further)| {
+            let known = previous.and_then(|measured| measured.further.get(idx));
+            measure_target(&further.target, &further.stations, std_mm, known, &mut step)
+        })
+        .collect::<Result<_, _>>()?;
+    Ok(Measured { target, further })
+}
+
+fn measure_target(
+    target: &Target,
+    stations: &[Station],
+    profile_std_mm: Option<f64>,
+    previous: Option<&MeasuredTarget>,
+    step: &mut impl FnMut() -> Result<(), Cancelled>,
+) -> Result<MeasuredTarget, Cancelled> {
+    let search = Search::of(target, profile_std_mm);
+    let previous = previous.filter(|measured| measured.search == search);
+    let mut measured = Vec::with_capacity(stations.len());
+    for (station_idx, station) in stations.iter().enumerate() {
         let mut captures = Vec::with_capacity(station.captures.len());
         for (capture_idx, capture) in station.captures.iter().enumerate() {
-            watch.report(done, total)?;
-            done += 1;
+            step()?;
             captures.push(match &capture.reading {
                 Reading::Point(point_in_sensor) => {
                     MeasuredCapture { profile: None, reading: calibrate::Reading::Point(*point_in_sensor) }
@@ -72,75 +160,122 @@ pub fn measure(session: &Session, previous: Option<&Measured>, watch: &mut dyn W
                     .cloned()
                     .unwrap_or_else(|| MeasuredCapture {
                         profile: Some(Arc::clone(profile)),
-                        reading: match found_arc(profile, &session.target, &options) {
-                            Ok(arc) => calibrate::Reading::Arc(Arc::new(arc)),
-                            Err(refusal) => calibrate::Reading::Refused(refusal),
-                        },
+                        reading: search.reading(profile),
                     }),
             });
         }
-        stations.push(captures);
+        measured.push(captures);
     }
-    Ok(Measured { options, stations })
+    Ok(MeasuredTarget { search, stations: measured })
 }
 
-fn found_arc(profile: &Profile, target: &Target, options: &ArcOptions) -> Result<ArcFit, ArcRefusal> {
-    match target {
-        Target::Ball { .. } => extract_arc(profile, options),
-        _ => Err(ArcRefusal::NoBall),
-    }
+/// The problem that the enabled stations of the session's own target pose. For a fixed sensor every pose is inverted, see
+/// [`calibrate`].
+///
+/// # Errors
+/// [`NothingToSolve`] for a target that no calibration is computed from.
+pub fn problem(session: &Session, measured: &Measured) -> Result<Problem, NothingToSolve> {
+    posed(session, &session.target, &session.stations, &measured.target)
 }
 
-/// The problem posed by the enabled stations. For a fixed sensor every pose is inverted, see [`calibrate`].
+/// The same for one of the further targets.
+///
+/// # Errors
+/// As [`problem`].
+///
+/// # Panics
+/// If there is no such target.
+pub fn problem_of(session: &Session, measured: &Measured, further_idx: usize) -> Result<Problem, NothingToSolve> {
+    let FurtherTarget { target, stations, .. } = &session.further[further_idx];
+    posed(session, target, stations, &measured.further[further_idx])
+}
+
+/// The problem posed by the enabled stations of a ball session.
 ///
 /// # Errors
 /// [`NotABallSession`] for any other target.
 pub fn ball_problem(session: &Session, measured: &Measured) -> Result<BallProblem, NotABallSession> {
-    let (radius_mm, radius_std_mm) = match &session.target {
-        Target::Ball { radius_mm, radius_std_mm } => (*radius_mm, *radius_std_mm),
-        Target::RightAnglePlate => return Err(NotABallSession { kind: "a right-angle plate" }),
-        Target::Point => return Err(NotABallSession { kind: "a point" }),
-        Target::Rgbd { .. } => return Err(NotABallSession { kind: "an RGB-D sequence" }),
+    match problem(session, measured) {
+        Ok(Problem::Ball(ball)) => Ok(ball),
+        Ok(Problem::Plate(_)) => Err(NotABallSession { kind: "a right-angle plate" }),
+        Ok(Problem::Point(_)) => Err(NotABallSession { kind: "a point" }),
+        Err(NothingToSolve::Workpiece) => Err(NotABallSession { kind: "a workpiece" }),
+        Err(NothingToSolve::Rgbd) => Err(NotABallSession { kind: "an RGB-D sequence" }),
+    }
+}
+
+fn posed(
+    session: &Session,
+    target: &Target,
+    stations: &[Station],
+    measured: &MeasuredTarget,
+) -> Result<Problem, NothingToSolve> {
+    let noise = Noise {
+        position_std_mm: session.robot.position_std_mm,
+        orientation_std_rad: session.robot.orientation_std_deg.map(f64::to_radians),
     };
-    let stations = session
-        .stations
-        .iter()
-        .zip(&measured.stations)
-        .enumerate()
-        .filter(|(_, (station, _))| station.enabled)
-        .map(|(idx, (station, readings))| {
-            let mut travel_mm = Some(0.0);
-            let captures = station
-                .captures
-                .iter()
-                .zip(readings)
-                .enumerate()
-                .map(|(capture_idx, (capture, measured_capture))| {
-                    if capture_idx > 0 {
-                        travel_mm = travel_mm.zip(capture.step_mm).map(|(travel, step)| travel + step);
-                    }
-                    calibrate::Capture {
-                        base_from_flange: match session.mount {
-                            Mount::OnFlange => capture.base_from_flange,
-                            Mount::Fixed => Transform::from_rigid(capture.base_from_flange.rigid().inverse()),
-                        },
-                        commanded_travel_mm: travel_mm,
-                        reading: measured_capture.reading.clone(),
-                    }
-                })
-                .collect();
-            calibrate::Station { idx, label: station.label.clone(), side: station.side, captures }
-        })
-        .collect();
-    Ok(BallProblem {
+    let reference_distance_mm = session.sensor.reference_distance_mm;
+    let used = stations.iter().zip(&measured.stations).enumerate().filter(|(_, (station, _))| station.enabled);
+    let posed = used.map(|(idx, (station, readings))| (station, posed_station(session.mount, idx, station, readings)));
+    let of_centres = |radius_mm, radius_std_mm, stations| BallProblem {
         radius_mm,
         radius_std_mm,
         mount: session.mount,
-        noise: Noise {
-            position_std_mm: session.robot.position_std_mm,
-            orientation_std_rad: session.robot.orientation_std_deg.map(f64::to_radians),
-        },
-        reference_distance_mm: session.sensor.reference_distance_mm,
+        noise,
+        reference_distance_mm,
         stations,
+    };
+    Ok(match target {
+        Target::Ball { radius_mm, radius_std_mm } => {
+            Problem::Ball(of_centres(*radius_mm, *radius_std_mm, posed.map(|(_, station)| station).collect()))
+        }
+        Target::Point => Problem::Point(of_centres(0.0, None, posed.map(|(_, station)| of_tips(station)).collect())),
+        Target::RightAnglePlate => Problem::Plate(PlateProblem {
+            mount: session.mount,
+            noise,
+            profile_std_mm: session.sensor.profile_std_mm,
+            reference_distance_mm,
+            rough_flange_from_sensor: session.sensor.rough_flange_from_sensor,
+            stations: posed.filter_map(|(given, station)| Some(PlateStation { edge: given.edge?, station })).collect(),
+        }),
+        Target::Workpiece => return Err(NothingToSolve::Workpiece),
+        Target::Rgbd { .. } => return Err(NothingToSolve::Rgbd),
     })
+}
+
+fn posed_station(mount: Mount, idx: usize, station: &Station, readings: &[MeasuredCapture]) -> calibrate::Station {
+    let mut travel_mm = Some(0.0);
+    let captures = station
+        .captures
+        .iter()
+        .zip(readings)
+        .enumerate()
+        .map(|(capture_idx, (capture, measured_capture))| {
+            if capture_idx > 0 {
+                travel_mm = travel_mm.zip(capture.step_mm).map(|(travel, step)| travel + step);
+            }
+            calibrate::Capture {
+                base_from_flange: match mount {
+                    Mount::OnFlange => capture.base_from_flange,
+                    Mount::Fixed => Transform::from_rigid(capture.base_from_flange.rigid().inverse()),
+                },
+                commanded_travel_mm: travel_mm,
+                reading: measured_capture.reading.clone(),
+            }
+        })
+        .collect();
+    calibrate::Station { idx, label: station.label.clone(), side: station.side, captures }
+}
+
+/// A tip seen in a profile is a point like one that was reduced elsewhere.
+fn of_tips(station: calibrate::Station) -> calibrate::Station {
+    let captures = station
+        .captures
+        .into_iter()
+        .map(|capture| match capture.reading.point_in_sensor_mm() {
+            Some(point) => calibrate::Capture { reading: calibrate::Reading::Point(point), ..capture },
+            None => capture,
+        })
+        .collect();
+    calibrate::Station { captures, ..station }
 }

@@ -4,8 +4,11 @@ use std::sync::Arc;
 
 use serde_json::{Map, Value};
 
+pub use crate::calibrate::Edge;
 use crate::calibrate::{Mount, SideChoice};
-use crate::geometry::{Base, Flange, PoseConvention, PoseNotation, Profile, Sensor as SensorFrame, Transform, Vec3};
+use crate::geometry::{
+    Base, Flange, PoseConvention, PoseNotation, Profile, Rigid, Sensor as SensorFrame, Transform, Vec3,
+};
 
 /// Fields of a JSON object that we do not know; they survive load and save.
 ///
@@ -49,17 +52,10 @@ pub struct Sensor {
     pub profile_std_mm: Option<f64>,
     /// The distance for which accuracy is stated, mm.
     pub reference_distance_mm: Option<f64>,
+    /// Roughly how the sensor is mounted, as the operator says: the start of methods that need one.
+    pub rough_flange_from_sensor: Option<Transform<Flange, SensorFrame>>,
     /// Fields unknown to us.
     pub unknown: UnknownFields,
-}
-
-/// Which edge of the right-angle plate a station saw.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Edge {
-    /// The edge p.
-    P,
-    /// The edge q.
-    Q,
 }
 
 /// What was measured.
@@ -76,6 +72,9 @@ pub enum Target {
     RightAnglePlate,
     /// A tip or pin.
     Point,
+    /// A part that is scanned to see what a calibration is worth; nothing is calibrated from it. Its stations are scans: many
+    /// captures along a path.
+    Workpiece,
     /// A recorded sequence of an RGB-D camera in place of stations.
     Rgbd {
         /// The sequence's folder, relative to the session file.
@@ -89,6 +88,36 @@ impl Target {
     pub const fn ball(radius_mm: f64) -> Self {
         Self::Ball { radius_mm, radius_std_mm: None }
     }
+}
+
+/// What is known of a target from elsewhere: touched with a calibrated tip, or read from a certificate.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Known {
+    /// Where a point is in the base, mm.
+    pub point_in_base_mm: Option<Vec3>,
+    /// Angle between two planes of a workpiece, degrees.
+    pub angle_deg: Option<f64>,
+    /// Distance from tooth to tooth, mm.
+    pub pitch_mm: Option<f64>,
+    /// Height of the teeth, mm.
+    pub height_mm: Option<f64>,
+    /// Diameter of a ball or cylinder, mm.
+    pub diameter_mm: Option<f64>,
+}
+
+/// Another target that the same sensor measured, on the same robot: to verify a calibration with, or to solve along.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FurtherTarget {
+    /// The user's name for it.
+    pub name: String,
+    /// What was measured.
+    pub target: Target,
+    /// What is known of it.
+    pub known: Known,
+    /// Its stations; their labels are unique among themselves.
+    pub stations: Vec<Station>,
+    /// Fields unknown to us.
+    pub unknown: UnknownFields,
 }
 
 /// What one capture holds.
@@ -160,8 +189,10 @@ pub struct Published {
 pub struct Truth {
     /// The true calibration. For [`Mount::Fixed`] it is `base_from_sensor`.
     pub flange_from_sensor: Transform<Flange, SensorFrame>,
-    /// The true ball centre, mm. For [`Mount::Fixed`] it is in the flange.
+    /// The true ball centre, tip or plate's corner, mm. For [`Mount::Fixed`] it is in the flange.
     pub target_in_base_mm: Vec3,
+    /// The true plate: origin in its corner, x along edge p, y along edge q.
+    pub base_from_plate: Option<Rigid>,
     /// Fields unknown to us.
     pub unknown: UnknownFields,
 }
@@ -179,10 +210,14 @@ pub struct Session {
     pub sensor: Sensor,
     /// What was measured.
     pub target: Target,
+    /// What is known of it from elsewhere.
+    pub known: Known,
     /// Where the sensor is.
     pub mount: Mount,
     /// The stations in the order of the file.
     pub stations: Vec<Station>,
+    /// Other targets that the same sensor measured.
+    pub further: Vec<FurtherTarget>,
     /// What a paper printed.
     pub published: Option<Published>,
     /// The truth, for simulated sessions.
@@ -201,8 +236,10 @@ impl Session {
             robot: Robot::default(),
             sensor: Sensor::default(),
             target,
+            known: Known::default(),
             mount: Mount::default(),
             stations: Vec::new(),
+            further: Vec::new(),
             published: None,
             truth: None,
             unknown: UnknownFields::new(),
@@ -214,10 +251,15 @@ impl Session {
     pub fn gives_results_of(&self, other: &Self) -> bool {
         let robot =
             |session: &Self| (session.robot.notation, session.robot.position_std_mm, session.robot.orientation_std_deg);
-        let sensor = |session: &Self| (session.sensor.profile_std_mm, session.sensor.reference_distance_mm);
+        let sensor = |session: &Self| {
+            let sensor = &session.sensor;
+            (sensor.profile_std_mm, sensor.reference_distance_mm, sensor.rough_flange_from_sensor)
+        };
         robot(self) == robot(other)
             && sensor(self) == sensor(other)
             && self.target == other.target
+            && self.known == other.known
+            && self.further == other.further
             && self.mount == other.mount
             && self.stations == other.stations
             && self.published == other.published

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use crate::calibrate::{Mount, SideChoice};
 use crate::geometry::{Rigid, Transform, Vec3, so3};
 use crate::scene::{Random, Scene, rounded, rounded_rotation};
-use crate::session::model::{Capture, Reading, Robot, Sensor, Session, Station, Target, Truth, UnknownFields};
+use crate::session::model::{Capture, Known, Reading, Robot, Sensor, Session, Station, Target, Truth, UnknownFields};
 
 use path::{Setup, StationPath};
 
@@ -76,15 +76,19 @@ pub fn simulate(options: &SimulationOptions) -> Session {
             model: "simulated".to_owned(),
             profile_std_mm: known(options.profile_std_mm),
             reference_distance_mm: Some(80.0),
+            rough_flange_from_sensor: None,
             unknown: UnknownFields::new(),
         },
         target: Target::ball(options.radius_mm),
+        known: Known::default(),
         mount: options.mount,
         stations,
+        further: Vec::new(),
         published: None,
         truth: Some(Truth {
             flange_from_sensor: Transform::from_rigid(setup.carrier_from_sensor),
             target_in_base_mm: setup.ball_in_world,
+            base_from_plate: None,
             unknown: UnknownFields::new(),
         }),
         unknown: UnknownFields::new(),

@@ -26,6 +26,7 @@ pub mod status;
 pub mod theme;
 pub mod top_bar;
 pub mod verdict;
+pub mod verify;
 pub mod widgets;
 pub mod window;
 

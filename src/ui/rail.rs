@@ -35,11 +35,14 @@ pub enum Step {
     Compare,
     /// What is wrong, and what to do next.
     Diagnosis,
+    /// What the calibration is worth on other data.
+    Verify,
 }
 
 impl Step {
     /// All steps in the order of the rail.
-    pub const ALL: [Self; 6] = [Self::Session, Self::Capture, Self::Arcs, Self::Poses, Self::Compare, Self::Diagnosis];
+    pub const ALL: [Self; 7] =
+        [Self::Session, Self::Capture, Self::Arcs, Self::Poses, Self::Compare, Self::Diagnosis, Self::Verify];
 
     /// The step's name.
     #[must_use]
@@ -51,6 +54,7 @@ impl Step {
             Self::Poses => words::STEP_POSES,
             Self::Compare => words::STEP_COMPARE,
             Self::Diagnosis => words::STEP_DIAGNOSIS,
+            Self::Verify => words::STEP_VERIFY,
         }
     }
 
@@ -62,6 +66,7 @@ impl Step {
             Self::Poses => words::STEP_POSES_HINT,
             Self::Compare => words::STEP_COMPARE_HINT,
             Self::Diagnosis => words::STEP_DIAGNOSIS_HINT,
+            Self::Verify => words::STEP_VERIFY_HINT,
         }
     }
 }
@@ -163,7 +168,7 @@ fn mark(workbench: &Workbench, selection: &Selection, num_pose_remarks: usize, s
     };
     match step {
         Step::Session => Mark::Fine("✔".to_owned()),
-        Step::Capture => Mark::None,
+        Step::Capture | Step::Verify => Mark::None,
         // Nothing is no reason for a tick, nor for a cross.
         Step::Arcs | Step::Poses | Step::Compare | Step::Diagnosis if document.session.stations.is_empty() => {
             Mark::None

@@ -72,7 +72,9 @@ fn next(workbench: &Workbench, step: Step) -> Option<(String, Action)> {
         Step::Arcs => (words::NEXT_POSES, Action::GoTo(Step::Poses)),
         Step::Poses => (words::NEXT_COMPARE, Action::GoTo(Step::Compare)),
         Step::Compare => (words::NEXT_DIAGNOSIS, Action::GoTo(Step::Diagnosis)),
-        Step::Diagnosis => return document.is_unsaved().then(|| (words::NEXT_SAVE.to_owned(), Action::Save)),
+        Step::Diagnosis | Step::Verify => {
+            return document.is_unsaved().then(|| (words::NEXT_SAVE.to_owned(), Action::Save));
+        }
     };
     Some((label.to_owned(), action))
 }

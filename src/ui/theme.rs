@@ -123,7 +123,9 @@ pub const fn method_color(method: Method) -> Color32 {
         Method::BallFixedPoint => Color32::from_rgb(0x00, 0x72, 0xb2),
         Method::BallMaxArcStep => Color32::from_rgb(0x7f, 0x7f, 0x7f),
         Method::BallMaxArc => Color32::from_rgb(0xd9, 0x7a, 0x00),
-        Method::BallBundle => Color32::from_rgb(0x00, 0x9e, 0x73),
+        Method::BallBundle | Method::PlateBundle => Color32::from_rgb(0x00, 0x9e, 0x73),
+        Method::PlateOrthogonal => Color32::from_rgb(0xcc, 0x79, 0xa7),
+        Method::FixedPoint => Color32::from_rgb(0x00, 0x72, 0xb2),
     }
 }
 
@@ -134,10 +136,11 @@ pub fn method_text_color(ui: &egui::Ui, method: Method) -> Color32 {
         return method_color(method).lerp_to_gamma(Color32::WHITE, 0.4);
     }
     match method {
-        Method::BallFixedPoint => method_color(method),
+        Method::BallFixedPoint | Method::FixedPoint => method_color(method),
         Method::BallMaxArcStep => Color32::from_rgb(0x66, 0x66, 0x66),
         Method::BallMaxArc => Color32::from_rgb(0xb3, 0x62, 0x00),
-        Method::BallBundle => Color32::from_rgb(0x00, 0x7a, 0x59),
+        Method::BallBundle | Method::PlateBundle => Color32::from_rgb(0x00, 0x7a, 0x59),
+        Method::PlateOrthogonal => Color32::from_rgb(0x9c, 0x4a, 0x78),
     }
 }
 
@@ -145,10 +148,11 @@ pub fn method_text_color(ui: &egui::Ui, method: Method) -> Color32 {
 #[must_use]
 pub const fn method_marker(method: Method) -> MarkerShape {
     match method {
-        Method::BallFixedPoint => MarkerShape::Circle,
+        Method::BallFixedPoint | Method::FixedPoint => MarkerShape::Circle,
         Method::BallMaxArcStep => MarkerShape::Down,
         Method::BallMaxArc => MarkerShape::Up,
-        Method::BallBundle => MarkerShape::Square,
+        Method::BallBundle | Method::PlateBundle => MarkerShape::Square,
+        Method::PlateOrthogonal => MarkerShape::Diamond,
     }
 }
 
@@ -156,10 +160,11 @@ pub const fn method_marker(method: Method) -> MarkerShape {
 #[must_use]
 pub const fn method_symbol(method: Method) -> &'static str {
     match method {
-        Method::BallFixedPoint => "●",
+        Method::BallFixedPoint | Method::FixedPoint => "●",
         Method::BallMaxArcStep => "▽",
         Method::BallMaxArc => "▲",
-        Method::BallBundle => "■",
+        Method::BallBundle | Method::PlateBundle => "■",
+        Method::PlateOrthogonal => "◆",
     }
 }
 

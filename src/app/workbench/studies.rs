@@ -4,10 +4,10 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crate::calibrate::validation::bootstrap;
-use crate::calibrate::{BallProblem, Method, MethodResult, best_available, solve_all};
-use crate::diagnose::{self, Case};
+use crate::calibrate::{BallProblem, Method, MethodResult, Problem, best_available};
+use crate::diagnose;
 use crate::plan::{Limits, PlanRefusal, next_stations};
-use crate::session::{Measured, Session, ball_problem, measure};
+use crate::session::{Measured, Session, measure, problem};
 use crate::watch::Cancelled;
 
 use super::Workbench;
@@ -24,9 +24,9 @@ pub struct Results {
     pub revision: u64,
     /// The arcs of all captures.
     pub measured: Arc<Measured>,
-    /// What the methods were given; `None` if the session is none for the ball.
-    pub problem: Option<Arc<BallProblem>>,
-    /// One entry a method, in the order of [`Method::ALL`]; empty if the session is none for the ball.
+    /// What the methods were given; `None` if nothing is computed from the session's target.
+    pub problem: Option<Arc<Problem>>,
+    /// One entry a method, in the order of [`Problem::methods`]; empty if nothing is computed.
     pub methods: Vec<MethodResult>,
     /// Why there are no methods, in words.
     pub refusal: Option<String>,
@@ -72,9 +72,9 @@ impl Workbench {
         self.solving.start("solve", &self.wake, move |watch| {
             let start = Instant::now();
             let measured = Arc::new(measure(&session, previous.as_deref(), watch)?);
-            let (problem, methods, refusal) = match ball_problem(&session, &measured) {
+            let (problem, methods, refusal) = match problem(&session, &measured) {
                 Ok(problem) => {
-                    let methods = solve_all(&problem, &Method::ALL, watch)?;
+                    let methods = problem.solve_all(problem.methods(), watch)?;
                     (Some(Arc::new(problem)), methods, None)
                 }
                 Err(refusal) => (None, Vec::new(), Some(refusal.to_string())),
@@ -84,11 +84,17 @@ impl Workbench {
     }
 
     /// Document, problem and results of the same revision, if there are any.
-    pub(super) fn case(&self) -> Option<(Arc<Session>, Arc<BallProblem>, Arc<Results>)> {
+    pub(super) fn case(&self) -> Option<(Arc<Session>, Arc<Problem>, Arc<Results>)> {
         let document = self.document.as_ref()?;
         let results = self.results.as_ref().filter(|results| self.is_current(results.revision))?;
         let problem = results.problem.as_ref()?;
         Some((Arc::clone(&document.session), Arc::clone(problem), Arc::clone(results)))
+    }
+
+    /// The same for what only balls have.
+    pub(super) fn ball_case(&self) -> Option<(Arc<Session>, Arc<BallProblem>, Arc<Results>)> {
+        let (session, problem, results) = self.case()?;
+        Some((session, Arc::new(problem.as_ball()?.clone()), results))
     }
 
     /// Results that are out of date are made anew first; the diagnosis follows them.
@@ -103,19 +109,19 @@ impl Workbench {
     pub(super) fn start_diagnosing(&mut self) {
         let Some((session, problem, results)) = self.case() else { return };
         self.diagnosis.start("diagnose", &self.wake, results.revision, move |watch| {
-            diagnose::diagnose(Case { session: &session, problem: &problem, results: &results.methods }, watch)
+            diagnose::diagnose_any(&session, &problem, &results.methods, watch)
         });
     }
 
     pub(super) fn start_ranking(&mut self) {
-        let Some((session, problem, results)) = self.case() else { return };
+        let Some((session, problem, results)) = self.ball_case() else { return };
         self.readings.start("try conventions", &self.wake, results.revision, move |watch| {
             diagnose::convention::rank(&session, &problem, watch)
         });
     }
 
     pub(super) fn start_planning(&mut self) {
-        let Some((_, problem, results)) = self.case() else { return };
+        let Some((_, problem, results)) = self.ball_case() else { return };
         let limits = self.plan_limits;
         self.plan.start("plan", &self.wake, results.revision, move |_| {
             let solution = best_available(&results.methods).ok_or(PlanRefusal::Undetermined);

@@ -128,7 +128,8 @@ impl Found<'_> {
             num_iterations: self.minimum.num_iterations,
             noise: self.noise,
             radius: self.radius,
-            reduced,
+            reduced: Some(reduced),
+            plate: None,
             change_by_radius,
             workspace_point_by_radius,
         })

@@ -1,13 +1,13 @@
 //! Profiles without a usable arc: named once for all of them, and as the reason where too little is left.
 
 use crate::calibrate::{Reading, Station, Warning};
-use crate::fit::ArcRefusal;
+use crate::fit::Refusal;
 
-fn refusals(stations: &[Station]) -> impl Iterator<Item = (&Station, usize, &ArcRefusal)> {
+fn refusals(stations: &[Station]) -> impl Iterator<Item = (&Station, usize, &Refusal)> {
     stations.iter().flat_map(|station| {
         station.captures.iter().enumerate().filter_map(move |(capture_idx, capture)| match &capture.reading {
             Reading::Refused(reason) => Some((station, capture_idx, reason)),
-            Reading::Arc(_) | Reading::Point(_) => None,
+            Reading::Arc(_) | Reading::Edge(_) | Reading::Point(_) => None,
         })
     })
 }
@@ -25,6 +25,6 @@ pub(super) fn refused_captures(stations: &[Station]) -> Option<Warning> {
 }
 
 /// Why the first of them was refused.
-pub(super) fn first_refusal(stations: &[Station]) -> Option<ArcRefusal> {
+pub(super) fn first_refusal(stations: &[Station]) -> Option<Refusal> {
     refusals(stations).next().map(|(_, _, reason)| reason.clone())
 }

@@ -35,7 +35,15 @@ pub fn bootstrap(
     seed: u64,
     watch: &mut dyn Watch,
 ) -> Result<Bootstrap, Cancelled> {
-    let reduced = &solution.reduced;
+    let Some(reduced) = &solution.reduced else {
+        // A plate's points are not reduced to stations that could be drawn.
+        return Ok(Bootstrap {
+            distances_mm: Vec::new(),
+            std_mm: f64::NAN,
+            within_95_mm: f64::NAN,
+            num_failed: num_draws,
+        });
+    };
     let reference_point =
         solution.uncertainty.as_ref().map(|uncertainty| uncertainty.reference_point_in_sensor_mm).unwrap_or_default();
     let here = workspace_point(&reduced.state, reference_point);

@@ -30,7 +30,7 @@ pub struct Influence {
 
 /// One entry a station; `None` where nothing can be left out.
 pub(super) fn influence(solution: &Solution) -> Option<Vec<Influence>> {
-    let reduced = &solution.reduced;
+    let reduced = solution.reduced.as_ref()?;
     let reference_point = solution.uncertainty.as_ref()?.reference_point_in_sensor_mm;
     let factor = reduced.variance_factor?;
     let here = workspace_point(&reduced.state, reference_point);

@@ -35,7 +35,7 @@ pub fn validate(solution: &Solution) -> Option<Validation> {
     Some(Validation {
         influence: influence::influence(solution)?,
         split_half: split_half::split_half(solution),
-        normality: normality::normality(&solution.reduced),
+        normality: normality::normality(solution.reduced.as_ref()?),
     })
 }
 

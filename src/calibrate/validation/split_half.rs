@@ -29,7 +29,7 @@ pub struct SplitHalf {
 
 /// `None` with too few stations, or if hardly any half can be solved.
 pub(super) fn split_half(solution: &Solution) -> Option<SplitHalf> {
-    let reduced = &solution.reduced;
+    let reduced = solution.reduced.as_ref()?;
     if reduced.num_stations < MIN_STATIONS {
         return None;
     }

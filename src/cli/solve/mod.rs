@@ -9,11 +9,11 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use crate::calibrate::validation::{Bootstrap, bootstrap};
-use crate::calibrate::{BallProblem, Method, MethodResult, best_available, solve_all};
-use crate::diagnose::{Case, Diagnosis, diagnose};
+use crate::calibrate::{Method, MethodResult, Problem, best_available};
+use crate::diagnose::{Diagnosis, diagnose_any};
 use crate::plan::{Limits, Plan, next_stations};
 use crate::report::result_file::{Examination, result_file};
-use crate::session::{self, Session, ball_problem, measure};
+use crate::session::{self, Session, measure};
 use crate::text::cli::no_such_station;
 use crate::text::diagnosis::first_finding;
 use crate::watch::{Cancelled, Watch};
@@ -107,10 +107,10 @@ pub fn run(args: &SolveArgs) -> ExitCode {
 /// # Errors
 /// Why there is nothing to print, in one line.
 fn solved(args: &SolveArgs, session: &Session) -> Result<ExitCode, String> {
-    let methods: Vec<Method> = if args.methods.is_empty() { Method::ALL.to_vec() } else { args.methods.clone() };
     let measured = watched("reading profiles", |progress| measure(session, None, progress))?;
-    let problem = ball_problem(session, &measured).map_err(|refusal| refusal.to_string())?;
-    let results = watched("solving", |progress| solve_all(&problem, &methods, progress))?;
+    let problem = session::problem(session, &measured).map_err(|refusal| refusal.to_string())?;
+    let methods = if args.methods.is_empty() { problem.methods() } else { args.methods.as_slice() };
+    let results = watched("solving", |progress| problem.solve_all(methods, progress))?;
     if args.paper_tables {
         return Ok(printed(&paper_tables::paper_tables(session, &results), session, &results, None));
     }
@@ -120,8 +120,7 @@ fn solved(args: &SolveArgs, session: &Session) -> Result<ExitCode, String> {
         format!("{:#}\n", result_file(session, &results, examination.as_ref()))
     } else {
         let section = examination.as_ref().map(|found| diagnosis::section(session, &results, found));
-        tables::tables(session, &problem, &results, found.as_ref().map(|found| &found.diagnosis))
-            + &section.unwrap_or_default()
+        tables::tables(session, &results, found.as_ref().map(|found| &found.diagnosis)) + &section.unwrap_or_default()
     };
     Ok(printed(&text, session, &results, found.as_ref().map(|found| &found.diagnosis)))
 }
@@ -134,18 +133,12 @@ struct Found {
 }
 
 impl Found {
-    fn new(
-        args: &SolveArgs,
-        session: &Session,
-        problem: &BallProblem,
-        results: &[MethodResult],
-    ) -> Result<Self, String> {
+    fn new(args: &SolveArgs, session: &Session, problem: &Problem, results: &[MethodResult]) -> Result<Self, String> {
         /// One pose is a hint; `handeye plan` plans more.
         const NUM_PLANNED: usize = 1;
         /// The same session gives the same output.
         const SEED: u64 = 1;
-        let case = Case { session, problem, results };
-        let diagnosis = watched("examining", |progress| diagnose(case, progress))?;
+        let diagnosis = watched("examining", |progress| diagnose_any(session, problem, results, progress))?;
         let best = best_available(results);
         let bootstrap = match best.zip(args.bootstrap) {
             Some((solution, num_draws)) => {
@@ -155,7 +148,8 @@ impl Found {
         };
         let plan = best
             .filter(|_| diagnosis.allows_planning())
-            .and_then(|solution| next_stations(problem, solution, &Limits::default(), NUM_PLANNED).ok());
+            .zip(problem.as_ball())
+            .and_then(|(solution, ball)| next_stations(ball, solution, &Limits::default(), NUM_PLANNED).ok());
         Ok(Self { diagnosis, plan, bootstrap })
     }
 

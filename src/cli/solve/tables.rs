@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::app::compare::{distance_from_truth, improvement, maximum_error_mm};
-use crate::calibrate::{BallProblem, Method, MethodResult, Mount, Solution, best_available};
+use crate::calibrate::{Method, MethodResult, Mount, Solution, best_available};
 use crate::diagnose::{Diagnosis, verdict_with};
 use crate::report::digits::{decimals_for, fixed, signed};
 use crate::session::Session;
@@ -12,22 +12,17 @@ use crate::text;
 /// Everything about the results, for a terminal 100 columns wide.
 ///
 /// Writing to a string does not fail, hence the `ok()`s.
-pub fn tables(
-    session: &Session,
-    problem: &BallProblem,
-    results: &[MethodResult],
-    diagnosis: Option<&Diagnosis>,
-) -> String {
+pub fn tables(session: &Session, results: &[MethodResult], diagnosis: Option<&Diagnosis>) -> String {
     let mut out = String::new();
-    let num_profiles: usize = problem.stations.iter().map(|station| station.captures.len()).sum();
+    let enabled = || session.stations.iter().filter(|station| station.enabled);
     writeln!(
         out,
-        "{} · ball R = {} mm · {} of {} stations, {} captures\n",
+        "{} · {} · {} of {} stations, {} captures\n",
         session.name,
-        problem.radius_mm,
-        problem.stations.len(),
+        text::start::target(&session.target),
+        enabled().count(),
         session.stations.len(),
-        num_profiles
+        enabled().map(|station| station.captures.len()).sum::<usize>()
     )
     .ok();
     if let Some(solution) = best_available(results) {

@@ -38,7 +38,7 @@ struct Tried {
 impl<'a> Solved<'a> {
     fn new(case: Case<'a>) -> Option<Self> {
         let model = Model::new(case.problem)?;
-        let start = best_available(case.results)?.reduced.state;
+        let start = best_available(case.results)?.reduced.as_ref()?.state;
         let as_given = model.fit(Extension::Plain, model.as_given(start));
         let plain = match (as_given, sides::found_anew(case, &model)) {
             // Given sides may have led to a minimum far off.

@@ -56,7 +56,7 @@ fn from_two_parts(solved: &Solved<'_>, from: usize) -> Option<Unknowns> {
         let part = BallProblem { stations: stations.to_vec(), ..solved.case.problem.clone() };
         // A start only, so the quick methods will do.
         let solution = solve(&part, Method::BallMaxArcStep).or_else(|_| solve(&part, Method::BallFixedPoint)).ok()?;
-        Some(solution.reduced.state)
+        Some(solution.reduced?.state)
     };
     let (before, after) = solved.case.problem.stations.split_at(from);
     let (first, second) = (state(before)?, state(after)?);

@@ -25,7 +25,7 @@ pub(super) fn found_anew(case: Case<'_>, model: &Model) -> Option<Fit> {
     }
     let open = with_sides(case.problem, |_, _| SideChoice::Auto);
     let found = solve(&open, Method::BallFixedPoint).ok()?;
-    model.fit(Extension::Plain, model.as_given(found.reduced.state))
+    model.fit(Extension::Plain, model.as_given(found.reduced?.state))
 }
 
 fn with_sides(problem: &BallProblem, side: impl Fn(usize, SideChoice) -> SideChoice) -> BallProblem {
@@ -126,7 +126,7 @@ fn arcs_bulge_away(problem: &BallProblem) -> bool {
         .flat_map(|station| &station.captures)
         .filter_map(|capture| match &capture.reading {
             Reading::Arc(arc) => Some(arc),
-            Reading::Refused(_) | Reading::Point(_) => None,
+            Reading::Edge(_) | Reading::Refused(_) | Reading::Point(_) => None,
         })
         .peekable();
     arcs.peek().is_some()

@@ -34,7 +34,7 @@ fn with_fault(fault: simulate::Fault) -> impl Iterator<Item = (SimulationOptions
 fn solved(session: &Session) -> (BallProblem, Vec<MethodResult>) {
     let measured = measure(session, None, &mut Unwatched).expect("not cancelled");
     let problem = ball_problem(session, &measured).expect("a ball");
-    let results = solve_all(&problem, &Method::ALL, &mut Unwatched).expect("not cancelled");
+    let results = solve_all(&problem, &Method::BALL, &mut Unwatched).expect("not cancelled");
     (problem, results)
 }
 

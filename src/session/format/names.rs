@@ -8,6 +8,7 @@ pub(super) const FORMAT: &str = "handeye-session";
 pub(super) const BALL: &str = "ball";
 pub(super) const RIGHT_ANGLE_PLATE: &str = "right-angle-plate";
 pub(super) const POINT: &str = "point";
+pub(super) const WORKPIECE: &str = "workpiece";
 pub(super) const RGBD: &str = "rgbd";
 pub(super) const ON_FLANGE: &str = "on-flange";
 pub(super) const FIXED: &str = "fixed";
@@ -45,7 +46,7 @@ pub(super) fn session(target: &Target) -> Vec<&'static str> {
     let of_target: &[&str] = match target {
         Target::Ball { .. } => &["truth"],
         Target::Rgbd { .. } => &["sequence"],
-        Target::RightAnglePlate | Target::Point => &[],
+        Target::RightAnglePlate | Target::Point | Target::Workpiece => &[],
     };
     [SESSION, of_target].concat()
 }

@@ -12,7 +12,8 @@ use crate::geometry::{Frame, PoseConvention, PoseNotation, Profile, Transform};
 use crate::session::check::Finding;
 use crate::session::limits::{self, Quantity};
 use crate::session::model::{
-    Capture, Edge, Published, Reading, Robot, Sensor, Session, Station, Target, Truth, UnknownFields, WrittenAngles,
+    Capture, Edge, Known, Published, Reading, Robot, Sensor, Session, Station, Target, Truth, UnknownFields,
+    WrittenAngles,
 };
 
 use super::cursor::{Cursor, Object, Refusal, listed};
@@ -48,6 +49,7 @@ const KINDS: &[(&str, Kind)] = &[
     (names::BALL, Kind::Ball),
     (names::RIGHT_ANGLE_PLATE, Kind::RightAnglePlate),
     (names::POINT, Kind::Point),
+    (names::WORKPIECE, Kind::Workpiece),
     (names::RGBD, Kind::Rgbd),
 ];
 
@@ -56,6 +58,7 @@ enum Kind {
     Ball,
     RightAnglePlate,
     Point,
+    Workpiece,
     Rgbd,
 }
 
@@ -78,7 +81,9 @@ pub(super) fn session(root: &Object<'_>, mended: &mut Mended) -> Result<Session,
         })?,
         published: root.optional("published").map(|cursor| published(&cursor, stations.len())).transpose()?,
         target,
+        known: Known::default(),
         stations,
+        further: Vec::new(),
         truth,
         unknown,
     })
@@ -137,6 +142,7 @@ fn sensor(cursor: &Cursor<'_>) -> Result<Sensor, Refusal> {
         model: object.text_or_empty("model")?,
         profile_std_mm: object.optional_number("profile_std_mm", &limits::LENGTH_STD_MM)?,
         reference_distance_mm: object.optional_number("reference_distance_mm", &limits::REFERENCE_DISTANCE_MM)?,
+        rough_flange_from_sensor: None,
         unknown: object.unknown(names::SENSOR),
     })
 }
@@ -165,6 +171,7 @@ fn target(root: &Object<'_>) -> Result<(Target, UnknownFields), Refusal> {
         }
         Kind::RightAnglePlate => Target::RightAnglePlate,
         Kind::Point => Target::Point,
+        Kind::Workpiece => Target::Workpiece,
         Kind::Rgbd => Target::Rgbd { sequence: sequence(root)? },
     };
     let mut unknown = root.unknown(&names::session(&target));
@@ -405,5 +412,10 @@ fn truth(cursor: &Cursor<'_>, mended: &mut Mended) -> Result<Truth, Refusal> {
     // What the truth was written in is of no use to anyone.
     let (flange_from_sensor, _) = pose(&object, pose_name, &mut unknown, mended)?;
     let ball = object.required(ball_name, "the ball's true centre, a list of 3 numbers in mm")?;
-    Ok(Truth { flange_from_sensor, target_in_base_mm: ball.vec3(&limits::POSITION_MM)?, unknown })
+    Ok(Truth {
+        flange_from_sensor,
+        target_in_base_mm: ball.vec3(&limits::POSITION_MM)?,
+        base_from_plate: None,
+        unknown,
+    })
 }

@@ -108,6 +108,7 @@ fn target(out: &mut Writer, target: &Target, unknown: Option<&UnknownFields>) {
         Target::Ball { .. } => names::BALL,
         Target::RightAnglePlate => names::RIGHT_ANGLE_PLATE,
         Target::Point => names::POINT,
+        Target::Workpiece => names::WORKPIECE,
         Target::Rgbd { .. } => names::RGBD,
     });
     if let Target::Ball { radius_mm, radius_std_mm } = target {

@@ -10,6 +10,9 @@ pub const fn method_name(method: Method) -> &'static str {
         Method::BallMaxArcStep => "Largest arc, published stop",
         Method::BallMaxArc => "Largest arc, whole curve",
         Method::BallBundle => "Bundle of all points",
+        Method::PlateOrthogonal => "Orthogonal edges, published",
+        Method::PlateBundle => "Bundle of both edges",
+        Method::FixedPoint => "Fixed point of a tip",
     }
 }
 
@@ -21,6 +24,9 @@ pub const fn method_short_name(method: Method) -> &'static str {
         Method::BallMaxArcStep => "published stop",
         Method::BallMaxArc => "whole curve",
         Method::BallBundle => "bundle",
+        Method::PlateOrthogonal => "orthogonal",
+        Method::PlateBundle => "plate bundle",
+        Method::FixedPoint => "tip",
     }
 }
 
@@ -34,6 +40,11 @@ pub const fn method_description(method: Method) -> &'static str {
         Method::BallMaxArcStep => "Steps along Y and stops at the first section with l ≥ R (Lin & Mu 2019, eq. 3)",
         Method::BallMaxArc => "Fits the whole radius-vs-step curve with the real pose of every step",
         Method::BallBundle => "All points of all profiles at once: the answer to use",
+        Method::PlateOrthogonal => {
+            "Vectors between points of one edge, perpendicular to those of the other (Chen et al. 2023, eq. 7, squared)"
+        }
+        Method::PlateBundle => "All edge points on two lines that meet at a right angle: the answer to use",
+        Method::FixedPoint => "A tip touched by the laser line from several poses stays where it is",
     }
 }
 

@@ -18,6 +18,7 @@ pub mod methods;
 pub mod poses;
 pub mod shell;
 pub mod start;
+pub mod verify;
 pub mod warnings;
 
 pub use check::*;

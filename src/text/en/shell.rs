@@ -86,6 +86,8 @@ pub const STEP_POSES: &str = "Poses";
 pub const STEP_COMPARE: &str = "Compare";
 /// Rail step.
 pub const STEP_DIAGNOSIS: &str = "Diagnosis";
+/// Rail step.
+pub const STEP_VERIFY: &str = "Verify";
 /// What the rail's step does.
 pub const STEP_SESSION_HINT: &str = "Open a session and see what it holds";
 /// What the rail's step does.
@@ -96,6 +98,9 @@ pub const STEP_POSES_HINT: &str = "The stations' poses, and which of them take p
 pub const STEP_COMPARE_HINT: &str = "The methods side by side";
 /// What the rail's step does.
 pub const STEP_DIAGNOSIS_HINT: &str = "What is wrong, how sure the result is, and where to measure next";
+/// What the rail's step does.
+pub const STEP_VERIFY_HINT: &str =
+    "What the calibration is worth on other data: lines, planes, a touched point, workpieces";
 
 /// Heading of the page shown where a step has nothing to show.
 pub const EMPTY_TITLE: &str = "No session is open";

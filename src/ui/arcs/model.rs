@@ -69,7 +69,7 @@ fn capture_row(reading: Option<&calibrate::Reading>) -> CaptureRow {
             row.rms_mm = Some(arc.rms_mm);
         }
         Some(calibrate::Reading::Refused(refusal)) => row.problem = Some(refusal.to_string()),
-        Some(calibrate::Reading::Point(_)) | None => nothing,
+        Some(calibrate::Reading::Edge(_) | calibrate::Reading::Point(_)) | None => nothing,
     }
     row
 }
@@ -157,7 +157,7 @@ pub fn profile_model(
     let arc = match reading {
         Some(calibrate::Reading::Arc(arc)) => Ok(arc.as_ref()),
         Some(calibrate::Reading::Refused(refusal)) => Err(refusal.to_string()),
-        Some(calibrate::Reading::Point(_)) | None => Err(text::NOT_MEASURED.to_owned()),
+        Some(calibrate::Reading::Edge(_) | calibrate::Reading::Point(_)) | None => Err(text::NOT_MEASURED.to_owned()),
     };
     let section = arc.clone().and_then(|arc| section_model(arc, method));
     let circle = section.as_ref().ok().map(|section| section.circle);

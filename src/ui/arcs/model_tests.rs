@@ -62,7 +62,7 @@ fn points_keep_their_class_and_residual() {
 fn a_refused_profile_keeps_its_points_and_says_why() {
     let (profile, _) = half_circle(1.0);
     let refusal = ArcRefusal::TooFewPoints { found: 3, needed: 8 };
-    let reading = calibrate::Reading::Refused(refusal.clone());
+    let reading = calibrate::Reading::Refused(refusal.clone().into());
     let model = profile_model(&profile, Some(&reading), None, CircleMethod::Robust);
     assert_eq!(model.section, Err(refusal.to_string()));
     assert_eq!(model.points.len(), 23);

@@ -111,7 +111,7 @@ impl super::panel::CaptureState {
         }
         let reading = match &live.arc {
             Ok(arc) => Reading::Arc(Arc::clone(arc)),
-            Err(refusal) => Reading::Refused(refusal.clone()),
+            Err(refusal) => Reading::Refused(refusal.clone().into()),
         };
         let model = Rc::new(profile_model(profile, Some(&reading), ball_radius_mm, CircleMethod::Robust));
         self.profile = Some((Arc::clone(profile), live.arc.is_ok(), Rc::clone(&model)));

@@ -8,7 +8,7 @@ use crate::calibrate::solver::Hessian;
 use crate::calibrate::{Reduced, RmsMax, Side, SolveError, Uncertainty, Warning};
 use crate::geometry::{Mat3, Rigid, Transform};
 use crate::session::model::UnknownFields;
-use crate::session::{Robot, Sensor, Station, Target, Truth};
+use crate::session::{Known, Robot, Sensor, Station, Target, Truth};
 
 fn session() -> Session {
     let station = |label: &str| Station {
@@ -25,12 +25,15 @@ fn session() -> Session {
         robot: Robot::default(),
         sensor: Sensor::default(),
         target: Target::ball(15.0),
+        known: Known::default(),
         mount: Mount::OnFlange,
+        further: Vec::new(),
         stations: ["a", "b", "c"].map(station).to_vec(),
         published: None,
         truth: Some(Truth {
             flange_from_sensor: Transform::identity(),
             target_in_base_mm: Vec3::zeros(),
+            base_from_plate: None,
             unknown: UnknownFields::new(),
         }),
         unknown: UnknownFields::new(),
@@ -79,7 +82,7 @@ fn solution(method: Method, shift_mm: f64, errors_mm: &[Vec3]) -> Solution {
         num_iterations: 3,
         noise: None,
         radius: None,
-        reduced: Reduced {
+        reduced: Some(Reduced {
             observations: Vec::new(),
             common_covariance: Vec::new(),
             num_stations: 2,
@@ -87,7 +90,8 @@ fn solution(method: Method, shift_mm: f64, errors_mm: &[Vec3]) -> Solution {
             hessian: Hessian::identity(),
             prior_information: 0.0,
             variance_factor: None,
-        },
+        }),
+        plate: None,
         change_by_radius: Vector6::zeros(),
         workspace_point_by_radius: Vec3::zeros(),
     }

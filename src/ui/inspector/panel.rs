@@ -83,7 +83,7 @@ fn capture_section(
         Some(calibrate::Reading::Point(point)) => {
             triple_row(ui, words::BALL_IN_SENSOR, (*point).into(), POSE_DECIMALS, "mm");
         }
-        None => {}
+        Some(calibrate::Reading::Edge(_)) | None => {}
     }
     let Some(solution) = solution else { return };
     match solution.stations.iter().find(|solved| solved.station_idx == station_idx) {
@@ -128,7 +128,7 @@ fn method_header(ui: &mut Ui, context: &mut PanelContext<'_>, document: &Documen
             let combo = ComboBox::from_id_salt("method shown")
                 .selected_text(method_text(ui, current))
                 .show_ui(ui, |ui| {
-                    for method in Method::ALL {
+                    for method in shown_methods(context) {
                         let text = method_text(ui, method);
                         ui.selectable_value(&mut context.selection.method, method, text);
                     }
@@ -248,4 +248,9 @@ fn copy_menu(ui: &mut Ui, document: &Document, solution: &Solution) {
             ui.close();
         }
     });
+}
+
+/// The methods for the session's target.
+fn shown_methods(context: &PanelContext<'_>) -> Vec<Method> {
+    context.workbench.results().map_or_else(Vec::new, |results| results.methods.iter().map(|r| r.method).collect())
 }

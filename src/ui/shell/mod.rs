@@ -29,9 +29,10 @@ use super::persisted::Persisted;
 use super::poses::panel::PosesState;
 use super::rail::{self, Step};
 use super::start::panel::StartState;
+use super::verify::VerifyState;
 use super::{
     PanelContext, Selection, arcs, capture, compare, diagnosis, inspector, poses, start, status, theme, top_bar,
-    widgets,
+    verify, widgets,
 };
 
 /// Height of the bar at the top, points.
@@ -79,6 +80,7 @@ pub struct Shell {
     cell_watch: CellWatch,
     compare: CompareState,
     diagnosis: DiagnosisState,
+    verify: VerifyState,
     import: ImportState,
     /// Frames until a clipboard that was asked for its text counts as empty.
     paste_patience: Option<u8>,
@@ -135,6 +137,7 @@ impl Shell {
             cell_watch: CellWatch::default(),
             compare: CompareState::default(),
             diagnosis: DiagnosisState::default(),
+            verify: VerifyState::default(),
             import: ImportState::default(),
             paste_patience: None,
             persisted,
@@ -315,6 +318,7 @@ impl Shell {
                 Step::Arcs => arcs::show(ui, &mut context, &mut self.arcs),
                 Step::Compare => compare::show(ui, &mut context, &mut self.compare),
                 Step::Diagnosis => diagnosis::show(ui, &mut context, &mut self.diagnosis),
+                Step::Verify => verify::show(ui, &mut context, &mut self.verify),
             }
         });
     }

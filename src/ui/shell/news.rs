@@ -67,7 +67,7 @@ impl Shell {
         self.seen_results = results.revision;
         let has_solution = |method: &Method| results.method(*method).is_some_and(|result| result.outcome.is_ok());
         if is_first || !has_solution(&self.selection.method) {
-            let by_trust = [Method::BallBundle, Method::BallMaxArc, Method::BallFixedPoint, Method::BallMaxArcStep];
+            let by_trust = Method::BEST_FIRST;
             if let Some(method) = by_trust.into_iter().find(has_solution) {
                 self.selection.method = method;
             }

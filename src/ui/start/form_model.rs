@@ -159,7 +159,7 @@ impl TargetKind {
             Target::Ball { .. } => Some(Self::Ball),
             Target::RightAnglePlate => Some(Self::Plate),
             Target::Point => Some(Self::Point),
-            Target::Rgbd { .. } => None,
+            Target::Workpiece | Target::Rgbd { .. } => None,
         }
     }
 

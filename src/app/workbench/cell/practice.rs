@@ -70,6 +70,7 @@ fn session_for(truth: &SimTruth, options: &SimOptions) -> Session {
     session.truth = Some(Truth {
         flange_from_sensor: Transform::from_rigid(truth.flange_from_sensor),
         target_in_base_mm: truth.ball_in_base,
+        base_from_plate: None,
         unknown: UnknownFields::new(),
     });
     session

@@ -215,7 +215,7 @@ impl Workbench {
 
     /// What the next station is chosen by.
     fn basis(&self) -> Result<Basis, String> {
-        if let (Some(plan), Some((_, problem, results))) = (self.current_plan(), self.case()) {
+        if let (Some(plan), Some((_, problem, results))) = (self.current_plan(), self.ball_case()) {
             return Ok(Basis::Solved { problem, results, planned: plan.clone() });
         }
         let (Some(document), Some(ball)) = (&self.document, self.ball()) else {

@@ -9,7 +9,7 @@ use crate::app::cell::{LiveProfile, ReplayView};
 use crate::calibrate::Reading as MeasuredReading;
 use crate::device::search::{Replay as SearchReplay, StepSeen};
 use crate::device::{ProfileReading, Readiness, RobotReport, SearchReport};
-use crate::fit::{ArcFit, ArcRefusal, extract_arc};
+use crate::fit::{ArcFit, ArcRefusal, Refusal, extract_arc};
 use crate::geometry::Vec3;
 use crate::session::{Capture, Reading, Station};
 use crate::text::cell as words;
@@ -179,7 +179,7 @@ impl Workbench {
             let Reading::Profile(profile) = &capture.reading else { return None };
             Some(match measured.and_then(|results| results.measured.reading(station_idx, capture_idx)) {
                 Some(MeasuredReading::Arc(arc)) => Ok(Arc::clone(arc)),
-                Some(MeasuredReading::Refused(refusal)) => Err(refusal.clone()),
+                Some(MeasuredReading::Refused(Refusal::Arc(refusal))) => Err(refusal.clone()),
                 _ => ball.map_or(Err(ArcRefusal::NoBall), |ball| extract_arc(profile, &ball).map(Arc::new)),
             })
         };

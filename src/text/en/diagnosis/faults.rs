@@ -223,6 +223,13 @@ fn unsolved_message(error: &SolveError, mount: Mount) -> String {
         SolveError::Undetermined { .. } => {
             "The stations leave at least one direction free, so there is no single answer.".to_owned()
         }
+        SolveError::OtherTarget { .. } => "This method is for another target.".to_owned(),
+        SolveError::TooFewEdgePoints { found_p, found_q, needed, refusal } => {
+            let because = refusal.as_ref().map_or_else(String::new, |refusal| format!(" A profile: {refusal}."));
+            format!(
+                "There are {found_p} points on edge p and {found_q} on edge q; {needed} on each are needed.{because}"
+            )
+        }
         SolveError::Diverged => "The solver found no finite answer.".to_owned(),
     }
 }
@@ -294,6 +301,10 @@ const fn unsolved_remedy(error: &SolveError) -> &'static str {
     match error {
         SolveError::TooFewStations { .. } => {
             "Add stations with other orientations, or look in Arcs why profiles are refused."
+        }
+        SolveError::OtherTarget { .. } => "Take a method for the session's target.",
+        SolveError::TooFewEdgePoints { .. } => {
+            "Add stations at the edge that lacks them, with other orientations, or look in Arcs why profiles are refused."
         }
         SolveError::TooFewProfileStations { .. } => {
             "Add stations with profiles, or look in Arcs why profiles are refused."

@@ -53,7 +53,7 @@ fn faults() -> Vec<Fault> {
     let tilted = Vec3::new(0.6, -0.8, 0.0);
     let label = || "station with a long label".to_owned();
     let unsolved = [
-        SolveError::TooFewStations { found: 1, needed: 4, refusal: Some(ArcRefusal::NoBall) },
+        SolveError::TooFewStations { found: 1, needed: 4, refusal: Some(ArcRefusal::NoBall.into()) },
         SolveError::TooFewProfileStations { found: 3, needed: 4, refusal: None },
         SolveError::TooFewSweeps { found: 0, needed: 4, steps: 3, refusal: None },
         SolveError::NoRotation { span_deg: 0.02 },

@@ -1,0 +1,9 @@
+//! The Verify step: what a calibration is worth on other data than its own.
+
+mod cross_target;
+mod distances;
+mod panel;
+mod stability;
+mod workpiece;
+
+pub use panel::{Section, VerifyState, show};
