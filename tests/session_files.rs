@@ -66,7 +66,7 @@ const BROKEN: &[(&str, &str, &[&str])] = &[
     ("\"radius_mm\": 15.0", "\"radius_mm\": NaN", &["line 11, column", "found `NaN"]),
     ("\"radius_mm\": 15.0", "\"radius_mm\": Infinity", &["line 11, column", "found `Infinity"]),
     ("\"radius_mm\": 15.0", "\"radius_mm\": null", &["target.radius_mm: found nothing, expected a ball's radius"]),
-    ("\"kind\": \"ball\"", "\"kind\": \"cube\"", &["target.kind: found \"cube\"", "\"ball\", \"right-angle-plate\", \"point\" or \"rgbd\""]),
+    ("\"kind\": \"ball\"", "\"kind\": \"cube\"", &["target.kind: found \"cube\"", "\"ball\", \"right-angle-plate\", \"point\", \"workpiece\" or \"rgbd\""]),
     ("\"kind\": \"ball\", ", "", &["target.kind: found nothing"]),
     ("{ \"kind\": \"ball\", \"radius_mm\": 15.0 }", "\"ball\"", &["target: found \"ball\", expected an object like"]),
     ("\"target\": { \"kind\": \"ball\", \"radius_mm\": 15.0 },", "", &["target: found nothing"]),
