@@ -25,6 +25,9 @@ const SLOW: f64 = 2.0;
 /// is further off once in 16 000 runs.
 const FAIR_STDS: f64 = 4.0;
 
+/// A search that finds its peak has at least three sections on either side of it.
+const FEWEST_IN_SEARCH: usize = 6;
+
 struct Bench {
     workbench: Workbench,
     woken: Receiver<()>,
@@ -173,6 +176,12 @@ fn a_run_over_eight_stations_gives_a_result_within_its_stated_sigma() {
     assert_eq!(run.num_done, 8, "{:?}", bench.workbench.notices());
     let done = bench.workbench.notices().iter().filter(|notice| notice.kind == NoticeKind::Done).count();
     assert_eq!(done, 1, "{:?}", bench.workbench.notices());
+
+    // What the last search saw is in the session, profile by profile; the stations before are its like.
+    let num_seen = bench.workbench.cell().search.as_ref().expect("searched").points.len();
+    let num_kept: Vec<_> = bench.session().stations.iter().map(|station| station.captures.len()).collect();
+    assert_eq!(num_kept.last(), Some(&num_seen), "{num_kept:?}");
+    assert!(num_kept.iter().all(|num| *num >= FEWEST_IN_SEARCH), "{num_kept:?}");
 
     let truth = bench.session().truth.clone().expect("a simulated cell knows it");
     let solution = bench.solution();
