@@ -6,8 +6,8 @@ use std::thread;
 
 use crate::geometry::{Base, Flange, Profile, Sensor, Transform, Vec3};
 
-use super::ScanError;
 use super::lanes::num_threads;
+use super::{PointSet, ScanError};
 
 /// One capture of a scan.
 #[derive(Clone, Debug)]
@@ -175,11 +175,19 @@ impl Cloud {
     /// The least and the greatest coordinates in the base, mm; `None` without points.
     #[must_use]
     pub fn bounds_mm(&self) -> Option<[Vec3; 2]> {
-        if self.is_empty() {
+        self.bounds_of_mm(&PointSet::all(self))
+    }
+
+    /// The same of some of the points.
+    #[must_use]
+    pub fn bounds_of_mm(&self, set: &PointSet) -> Option<[Vec3; 2]> {
+        if set.is_empty() {
             return None;
         }
         let ends = |values: &[f32]| {
-            values.iter().fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], v| [low.min(*v), high.max(*v)])
+            set.runs().fold([f32::INFINITY, f32::NEG_INFINITY], |ends, run| {
+                values[run].iter().fold(ends, |[low, high], value| [low.min(*value), high.max(*value)])
+            })
         };
         let [x, y, z] = self.offsets_mm().map(ends);
         let corner = |end: usize| self.origin_mm + Vec3::new(x[end].into(), y[end].into(), z[end].into());

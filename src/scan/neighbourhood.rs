@@ -1,7 +1,7 @@
 //! Small patches of a surface: a thinned sample of its points, how far apart they are, and the planes of patches.
 
-use crate::geometry::Vec3;
 use crate::geometry::stats::{SplitMix, median};
+use crate::geometry::{Mat3, Vec3};
 
 use super::plane::plane_of;
 use super::{Cloud, Plane, PointSet};
@@ -69,4 +69,24 @@ impl Sample {
         let mut rms: Vec<f64> = self.patches(NUM_PROBES).into_iter().map(|patch| patch.rms_mm).collect();
         if rms.is_empty() { 0.0 } else { median(&mut rms) }
     }
+}
+
+/// The direction that all normals are perpendicular to, as far as they are: that along which a part stays the same. With it
+/// the angle by which the middle one of the normals is off, rad.
+pub(super) fn common_direction(normals: &[Vec3]) -> Option<(Vec3, f64)> {
+    /// Normals that are off by more are of something else, and count less and less, rad.
+    const OFF: f64 = 0.05;
+    const NUM_PASSES: usize = 12;
+    let mut direction = None;
+    for _ in 0..NUM_PASSES {
+        let scatter = normals.iter().fold(Mat3::zeros(), |sum, normal| {
+            let off = direction.map_or(0.0, |direction: Vec3| direction.dot(normal) / OFF);
+            sum + normal * normal.transpose() / (1.0 + off * off)
+        });
+        let eigen = scatter.symmetric_eigen();
+        direction = Some(eigen.eigenvectors.column(eigen.eigenvalues.imin()).into_owned());
+    }
+    let direction = direction?;
+    let mut off: Vec<f64> = normals.iter().map(|normal| normal.dot(&direction).abs().asin()).collect();
+    (off.len() >= 3).then(|| (direction, median(&mut off)))
 }

@@ -20,6 +20,10 @@ const SEED: u64 = 0x9142e;
 const LEAST_PIECE: f64 = 0.05;
 /// Cells along a plane at most.
 const MOST_CELLS: f64 = 1024.0;
+/// Planes at a lesser angle (its sine) have no edge.
+const LEAST_CROSSING: f64 = 0.15;
+/// Points this many tolerances from another plane are by its edge.
+const EDGE_TOLERANCES: f64 = 4.0;
 /// Surfaces are never flatter than this to a sensor on a robot, mm.
 const LEAST_TOLERANCE_MM: f64 = 0.15;
 
@@ -68,22 +72,39 @@ pub fn find_planes(
     )]
     let least = (set.len() as f64 * options.least_share).ceil() as usize;
     let mut left = set.clone();
-    let mut found = Vec::new();
+    let mut found: Vec<Found> = Vec::new();
     while found.len() < options.most && left.len() >= least.max(3) {
         watch.report(found.len(), options.most)?;
-        let Some((region, taken)) = largest(cloud, &left, tolerance_mm) else { break };
-        if region.len() < least {
-            break;
-        }
-        left = left.without(&taken);
-        found.push(region);
+        let Some(next) = largest(cloud, &left, tolerance_mm).filter(|next| next.region.len() >= least) else { break };
+        left = left.without(&next.taken);
+        found.push(next);
     }
-    found.sort_by_key(|region| std::cmp::Reverse(region.len()));
-    Ok(found)
+    let planes: Vec<Plane> = found.iter().map(|found| found.plane).collect();
+    let mut regions: Vec<PointSet> = (found.iter().enumerate())
+        .map(|(idx, found)| {
+            // Points by an edge are of both planes, or of neither: a sensor sees edges badly.
+            let crosses = |other: &Plane| other.normal.cross(&planes[idx].normal).norm() > LEAST_CROSSING;
+            let others: Vec<&Plane> = planes.iter().filter(|other| crosses(other)).collect();
+            found.region.filter(cloud, |point| {
+                others.iter().all(|other| other.distance_mm(point).abs() > EDGE_TOLERANCES * tolerance_mm)
+            })
+        })
+        .collect();
+    regions.retain(|region| region.len() >= 3);
+    regions.sort_by_key(|region| std::cmp::Reverse(region.len()));
+    Ok(regions)
 }
 
-/// The largest plane among the points, and those points that are not looked at again: they lie near it.
-fn largest(cloud: &Cloud, left: &PointSet, tolerance_mm: f64) -> Option<(PointSet, PointSet)> {
+/// A plane that was found, about the cloud's origin.
+struct Found {
+    plane: Plane,
+    region: PointSet,
+    /// Points that are not looked at again: they lie near it.
+    taken: PointSet,
+}
+
+/// The largest plane among the points.
+fn largest(cloud: &Cloud, left: &PointSet, tolerance_mm: f64) -> Option<Found> {
     let sample = Sample::of(cloud, left, NUM_SAMPLED);
     let mut random = SplitMix::new(SEED);
     let best = (0..NUM_SEEDS)
@@ -99,7 +120,7 @@ fn largest(cloud: &Cloud, left: &PointSet, tolerance_mm: f64) -> Option<(PointSe
     let hangs_together = |set: &PointSet| pieces.keep(cloud, set, &kept);
     let region = hangs_together(&near_fit(cloud, left, &fit, tolerance_mm));
     let taken = hangs_together(&near_fit(cloud, left, &fit, 2.0 * tolerance_mm));
-    Some((region, taken))
+    Some(Found { plane: fit.plane.about(cloud.origin_mm()), region, taken })
 }
 
 /// The points that lie on one plane with a point and hang together with it.
