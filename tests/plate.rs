@@ -37,21 +37,35 @@ fn experiment() {
             let (mut errors, mut gross, mut agreed, mut other, mut sigma) = (Vec::new(), 0, 0, 0, Vec::new());
             for seed in 1..=200 {
                 let simulated = simulated(&cell, seed);
-                let Ok(solution) = solve(&simulated.problem, method) else { gross += 1; continue };
+                let Ok(solution) = solve(&simulated.problem, method) else {
+                    gross += 1;
+                    continue;
+                };
                 let (error_mm, error_deg) = error(&solution.flange_from_sensor, &simulated.flange_from_sensor);
-                if error_mm > 5.0 || error_deg > 2.0 { gross += 1; }
+                if error_mm > 5.0 || error_deg > 2.0 {
+                    gross += 1;
+                }
                 errors.push(error_mm);
                 agreed += solution.plate.as_ref().expect("plate").starts.num_agreed;
                 other += usize::from(solution.warnings.iter().any(|w| w.code() == "other-minimum"));
                 if let Some(known) = &solution.uncertainty {
                     let r = known.reference_point_in_sensor_mm;
-                    let e = (solution.flange_from_sensor.map_point(r) - simulated.flange_from_sensor.transform_point(&r.into()).coords).norm();
+                    let e = (solution.flange_from_sensor.map_point(r)
+                        - simulated.flange_from_sensor.transform_point(&r.into()).coords)
+                        .norm();
                     sigma.push((e * e, known.workspace_point_std_mm.powi(2)));
                 }
             }
             errors.sort_by(f64::total_cmp);
             let (a, b): (f64, f64) = sigma.iter().fold((0.0, 0.0), |s, x| (s.0 + x.0, s.1 + x.1));
-            println!("{name} {} median {:.4} max {:.3} gross {gross} agreed {:.2} other {other} err/sigma {:.3}", method.id(), errors[errors.len() / 2], errors[errors.len() - 1], agreed as f64 / 200.0, (a / b).sqrt());
+            println!(
+                "{name} {} median {:.4} max {:.3} gross {gross} agreed {:.2} other {other} err/sigma {:.3}",
+                method.id(),
+                errors[errors.len() / 2],
+                errors[errors.len() - 1],
+                agreed as f64 / 200.0,
+                (a / b).sqrt()
+            );
         }
     }
 }

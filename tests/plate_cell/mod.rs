@@ -70,7 +70,13 @@ fn mounted(random: &mut Random) -> Rigid {
 }
 
 /// The pose that puts `point_in_sensor` on `point_in_base`, looking down at about the nominal orientation.
-fn view(cell: &Cell, flange_from_sensor: &Rigid, point_in_base: Vec3, point_in_sensor: Vec3, random: &mut Random) -> Rigid {
+fn view(
+    cell: &Cell,
+    flange_from_sensor: &Rigid,
+    point_in_base: Vec3,
+    point_in_sensor: Vec3,
+    random: &mut Random,
+) -> Rigid {
     let spread = cell.spread_deg.to_radians();
     let tilt = Vec3::new(random.signed_unit(), random.signed_unit(), random.signed_unit()) * spread;
     // Looking down, the laser line at 45° to both edges.
@@ -123,7 +129,8 @@ pub fn simulated(cell: &Cell, seed: u64) -> Simulated {
     let lying = exp(Vec3::new(0.1 * random.signed_unit(), 0.1 * random.signed_unit(), 0.0));
     let base_from_plate = Rigid::from_parts(Vec3::new(600.0, -150.0, 40.0).into(), lying);
     let mut stations = Vec::new();
-    for (edge, num_points, along) in [(Edge::P, cell.num_points[0], Vec3::x()), (Edge::Q, cell.num_points[1], Vec3::y())]
+    for (edge, num_points, along) in
+        [(Edge::P, cell.num_points[0], Vec3::x()), (Edge::Q, cell.num_points[1], Vec3::y())]
     {
         for idx in 0..num_points {
             let in_plate = along * (EDGE_MM * (0.05 + 0.9 * random.unit()));

@@ -268,7 +268,7 @@ fn a_ball_is_found_from_its_sections_with_the_true_calibration() {
 fn every_calibration_meets_every_target() {
     let case = |name: &str, problem: Problem| {
         let results = problem.solve_all(problem.methods(), &mut Unwatched).expect("not cancelled");
-        TargetCase { name: name.to_owned(), problem, results, touched_mm: None }
+        TargetCase { name: name.to_owned(), further_idx: None, problem, results, touched_mm: None }
     };
     let cell = PaperCell::noisy(3);
     let targets = vec![case("tip", cell.tip_target(16)), case("plate", cell.plate_target())];
