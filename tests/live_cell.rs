@@ -9,11 +9,13 @@ use std::time::{Duration, Instant};
 use handeye::app::cell::{Activity, CellCommand, CellSettings, RoughMounting, StationRoutine};
 use handeye::app::compare::distance_from_truth;
 use handeye::app::{Command, NoticeKind, RecoverySettings, Workbench};
+use handeye::calibrate::verdict::GOOD_UP_TO_MM;
 use handeye::calibrate::{Method, Solution};
 use handeye::device::sim::{Fault, FaultSpec, Head, SimCell, SimOptions};
 use handeye::device::{LinkState, MotionRefusal, RobotKind, RoutineEnd, SearchPhase, SensorKind, WorkspaceBox};
 use handeye::geometry::Vec3;
 use handeye::session::{Edit, Row, Session, SetupField, Target};
+use handeye::ui::capture::model::Outlook;
 
 /// Long past anything that is waited for here, on a slow machine as well.
 const PATIENCE: Duration = Duration::from_mins(2);
@@ -209,6 +211,25 @@ fn a_run_over_eight_stations_gives_a_result_within_its_stated_sigma() {
     after.workbench.apply(Command::Recover(0));
     after.wait("the recovered session", |workbench| workbench.document().is_some());
     assert_eq!(after.session().num_captures(), num_captures);
+}
+
+#[test]
+fn a_run_as_long_as_the_outlook_says_ends_good() {
+    let mut bench = Bench::practising(1, FAST).armed();
+    bench.cell(CellCommand::StartRun { num_stations: 8 });
+    bench.wait_for_rest();
+    let outlook = |workbench: &Workbench| workbench.current_plan().and_then(Outlook::new);
+    let told = outlook(&bench.workbench).expect("eight stations of this cell are not good yet");
+    let num_stations = u16::try_from(told.num_to_good.expect("within reach")).expect("not so many");
+    bench.cell(CellCommand::StartRun { num_stations });
+    // It begins with a proposal, as the robot stands at a station.
+    bench.wait("the way to a further station", |workbench| workbench.cell().activity == Activity::Moving);
+    bench.wait_for_rest();
+    let std_mm = bench.solution().uncertainty.as_ref().expect("known").workspace_point_std_mm;
+    println!("{:.3} mm, and {std_mm:.3} mm after {num_stations} more", told.std_mm);
+    // What is planned is not quite what is measured.
+    assert!(std_mm < 1.1 * GOOD_UP_TO_MM, "{std_mm} mm after {num_stations} more");
+    assert!(num_stations > 2 && std_mm > 0.8 * GOOD_UP_TO_MM, "{std_mm} mm: it asks for too many, {num_stations}");
 }
 
 #[test]
