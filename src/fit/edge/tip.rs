@@ -14,6 +14,8 @@ use super::{EdgeFit, EdgeOptions, Feature, Sighting, corner};
 pub(super) const MIN_TIP_POINTS: usize = 3;
 /// Strays that hang together by chance have less than one in so many of the points of the thing itself.
 const STRAYS_ONE_IN: usize = 4;
+/// The part of the points between its ends that a thing shows at least.
+const LEAST_DENSITY: f64 = 0.6;
 /// Points of one thing are no further apart along the profile than this.
 const MAX_GAP: usize = 8;
 /// A steep side falls by so many pitches from one point to the next.
@@ -73,7 +75,11 @@ fn clusters(points: &Points, background: &[&Piece]) -> Vec<Vec<usize>> {
             None => clusters.push(vec![place]),
         }
     }
-    clusters.retain(|cluster| cluster.len() >= MIN_TIP_POINTS);
+    let is_dense = |cluster: &[usize]| {
+        let width = points.grid[cluster[cluster.len() - 1]] - points.grid[cluster[0]] + 1;
+        to_f64(cluster.len()) >= LEAST_DENSITY * to_f64(width)
+    };
+    clusters.retain(|cluster| cluster.len() >= MIN_TIP_POINTS && is_dense(cluster));
     clusters.sort_by_key(|cluster| std::cmp::Reverse(cluster.len()));
     let most = clusters.first().map_or(0, Vec::len);
     clusters.retain(|cluster| STRAYS_ONE_IN * cluster.len() >= most);
@@ -253,13 +259,16 @@ fn middle(points: &Points, cluster: &[usize], options: &EdgeOptions) -> Option<E
     let start = line::search(&x_mm, &z_mm, points.tolerance_mm)?;
     let straight = line::fit_trimmed(&x_mm, &z_mm, &start, 2.0 * points.tolerance_mm)?;
     let on_line = |place: &usize| straight.line.distance_mm(points.at(*place)).abs() <= straight.limit_mm;
-    let mut seen = cluster.iter().copied().filter(on_line);
-    let first = seen.next()?;
-    let middle_x_mm = f64::midpoint(points.x_mm[first], points.x_mm[seen.next_back()?]);
+    let seen: Vec<usize> = cluster.iter().copied().filter(on_line).collect();
+    let (first, last) = (*seen.first()?, *seen.last()?);
+    let middle_x_mm = f64::midpoint(points.x_mm[first], points.x_mm[last]);
     let point_mm = straight.line.at_x_mm(middle_x_mm)?;
     let std_mm = straight.rms_mm.max(options.profile_std_mm.unwrap_or(points.noise_mm));
-    // Each end is uniform within a pitch; the middle is the mean of the two.
-    let across = points.pitch_mm * points.pitch_mm / 24.0;
+    // Each end is uniform within a pitch, or further out if its last points were missed, as others on it were; the middle is
+    // the mean of the two.
+    let seen_part = to_f64(seen.len()) / to_f64(points.grid[last] - points.grid[first] + 1);
+    let of_end = 1.0 / 12.0 + (1.0 - seen_part) / (seen_part * seen_part);
+    let across = points.pitch_mm * points.pitch_mm * of_end / 2.0;
     let slide = Vector2::new(1.0, straight.line.slope()?);
     let off = straight.variance_factor_at(point_mm) * std_mm * std_mm;
     Some(EdgeFit {
