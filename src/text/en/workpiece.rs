@@ -242,6 +242,22 @@ pub fn wrote_cloud(path: &str, num_points: usize) -> String {
     format!("wrote {} points to {path}\n", grouped(num_points))
 }
 
+/// How many of the points are drawn.
+#[must_use]
+pub fn showing(num_shown: usize, num_points: usize) -> String {
+    if num_shown == num_points {
+        format!("showing all {} points", grouped(num_points))
+    } else {
+        format!("showing {} of {} points", grouped(num_shown), grouped(num_points))
+    }
+}
+
+/// The point under the pointer.
+#[must_use]
+pub fn point_readout(x: &str, y: &str, z: &str) -> String {
+    format!("x {x}  y {y}  z {z} mm")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
