@@ -14,6 +14,7 @@ pub mod export;
 pub mod import;
 pub mod plan;
 pub mod report;
+pub mod scan;
 pub mod screenshot;
 pub mod simulate;
 pub mod solve;
@@ -48,6 +49,8 @@ pub enum Command {
     Import(Box<import::ImportArgs>),
     /// Exports the poses and profiles of a session file as CSV
     Export(export::ExportArgs),
+    /// Measures planes, teeth and diameters of a scanned part, and exports its points
+    Scan(Box<scan::ScanArgs>),
     /// Plans the stations to measure next
     Plan(plan::PlanArgs),
     /// Writes a simulated session with its truth
@@ -69,6 +72,7 @@ impl Command {
             Self::Check(args) => check::run(args),
             Self::Import(args) => import::run(args),
             Self::Export(args) => export::run(args),
+            Self::Scan(args) => scan::run(args),
             Self::Plan(args) => plan::run(args),
             Self::Simulate(args) => simulate::run(args),
             Self::Cell(args) => cell::run(args),
