@@ -354,3 +354,51 @@ pub fn suspect_sentence(suspect: &Suspect) -> String {
         suspect.defect_then
     )
 }
+
+/// First line of `handeye verify`.
+#[must_use]
+pub fn verify_head(session: &str, calibrations: usize, targets: usize) -> String {
+    let plural = super::plural;
+    format!("{session} · {calibrations} calibration{} on {targets} target{}\n", plural(calibrations), plural(targets))
+}
+
+/// Why there is nothing to verify.
+#[must_use]
+pub fn nothing_to_verify(reason: &str) -> String {
+    let reason = if reason.is_empty() { "no target is one to calibrate from" } else { reason };
+    format!("no calibration was computed ({reason}); give one with --calibration")
+}
+
+/// How far a matrix is from a rotation, in one line.
+#[must_use]
+pub fn defect_line(check: &MatrixCheck) -> String {
+    let angle = check.angle_rad.map_or_else(String::new, |angle| {
+        format!("; the nearest rotation, which is judged instead, turns a column by {:.3}°", angle.to_degrees())
+    });
+    format!(
+        "the largest element of RᵀR − 1 is {:.4}, by rounding at most {:.4}; the determinant is {:.4}{angle}",
+        check.defect, check.rounding, check.determinant
+    )
+}
+
+/// Heads the table of distances.
+#[must_use]
+pub fn distances_head(target: &str, points: usize) -> String {
+    format!(
+        "\ndistances of {points} points from the fitted lines and plane / mm: {target}\n\
+         {:<32}{:>8}{:>8}{:>8}  {:>8}{:>8}{:>8}  {:>9}{:>8}\n",
+        "", "line", "sd", "max", "plane", "sd", "max", "angle/°", "gap"
+    )
+}
+
+/// Heads the stability tables.
+#[must_use]
+pub fn stability_head(target: &str, is_touched: bool) -> String {
+    let reference = if is_touched { "touched point" } else { "mean" };
+    format!("\nmeasured − {reference} / mm: {target}\n")
+}
+
+/// Heads the cross-target table.
+pub const CROSS_TABLE_HEAD: &str = "\nevery calibration on every target, RMS / max in mm\n";
+/// Below all tables.
+pub const OWN_DATA_FOOT: &str = "* computed from these data\n";
