@@ -15,6 +15,7 @@ pub mod plate;
 pub mod problem;
 pub mod reduced;
 pub mod rotation_start;
+mod shared_warnings;
 pub mod solution;
 pub mod solver;
 pub mod uncertainty;
@@ -24,10 +25,12 @@ pub mod warning;
 
 pub use error::SolveError;
 pub use method::{Method, MethodResult, best_available, solution_of, solve, solve_all};
+pub use plate::PlateReduced;
 pub use problem::{
     BallProblem, Capture, Edge, Mount, Noise, PlateProblem, PlateStation, Problem, Reading, Side, SideChoice, Station,
 };
 pub use reduced::Reduced;
+pub(crate) use shared_warnings::{ONE_AXIS_RATIO, RECOMMENDED_SPAN_DEG};
 pub use solution::{
     AboveStated, EstimatedRadius, NoiseModel, PlateFound, PlatePoint, RmsMax, Solution, Starts, StationSolution, Sweep,
     SweepPoint, Uncertainty,

@@ -18,6 +18,7 @@ pub mod scan;
 pub mod screenshot;
 pub mod simulate;
 pub mod solve;
+pub mod verify;
 
 /// The input is wrong.
 pub const EXIT_WRONG_INPUT: u8 = 2;
@@ -43,6 +44,8 @@ pub struct Args {
 pub enum Command {
     /// Runs the calibration methods on a session file
     Solve(solve::SolveArgs),
+    /// Says what calibrations are worth on other data: distances, stability, other targets
+    Verify(verify::VerifyArgs),
     /// Validates a session file and lists what is odd about it
     Check(check::CheckArgs),
     /// Imports poses and profiles (tables, robot programs, papers, folders) into a session file
@@ -69,6 +72,7 @@ impl Command {
     pub fn run(&self) -> ExitCode {
         match self {
             Self::Solve(args) => solve::run(args),
+            Self::Verify(args) => verify::run(args),
             Self::Check(args) => check::run(args),
             Self::Import(args) => import::run(args),
             Self::Export(args) => export::run(args),

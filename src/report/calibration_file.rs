@@ -79,11 +79,20 @@ pub struct NamedCalibration {
     pub flange_from_sensor: Transform<Flange, Sensor>,
 }
 
-/// Reads a calibration. Of a result file the answer is taken, or the named method.
+/// Reads a calibration. Of a result file the answer is taken, or the first method that has a result.
 ///
 /// # Errors
 /// [`CalibrationFileError`].
 pub fn read_calibration(path: &Path) -> Result<NamedCalibration, CalibrationFileError> {
+    let (name, matrix) = read_matrix(path)?;
+    Ok(NamedCalibration { name, flange_from_sensor: checked(path, &matrix)? })
+}
+
+/// The same as a matrix that need not be a rotation, with what it is called.
+///
+/// # Errors
+/// [`CalibrationFileError`], but never [`CalibrationFileError::NoRotation`].
+pub fn read_matrix(path: &Path) -> Result<(String, GivenMatrix), CalibrationFileError> {
     let unreadable = |problem| CalibrationFileError::Unreadable { file: path.to_owned(), problem };
     let file_name =
         path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned());
@@ -93,12 +102,12 @@ pub fn read_calibration(path: &Path) -> Result<NamedCalibration, CalibrationFile
     let text = std::str::from_utf8(&bytes).map_err(|_| neither("bytes that are no text"))?;
     if text.trim_start().starts_with('{') {
         let value: Value = serde_json::from_str(text).map_err(|error| neither(&format!("broken JSON ({error})")))?;
-        let (method, flange_from_sensor) = from_result(path, &value)?;
-        return Ok(NamedCalibration { name: format!("{file_name}: {method}"), flange_from_sensor });
+        let (method, matrix) = from_result(path, &value)?;
+        return Ok((format!("{file_name}: {method}"), matrix));
     }
     let matrix =
         parse_matrix(text).map_err(|refusal| CalibrationFileError::NoMatrix { file: path.to_owned(), refusal })?;
-    Ok(NamedCalibration { name: file_name, flange_from_sensor: checked(path, &matrix)? })
+    Ok((file_name, matrix))
 }
 
 fn checked(path: &Path, matrix: &GivenMatrix) -> Result<Transform<Flange, Sensor>, CalibrationFileError> {
@@ -110,7 +119,7 @@ fn checked(path: &Path, matrix: &GivenMatrix) -> Result<Transform<Flange, Sensor
     })
 }
 
-fn from_result(path: &Path, value: &Value) -> Result<(String, Transform<Flange, Sensor>), CalibrationFileError> {
+fn from_result(path: &Path, value: &Value) -> Result<(String, GivenMatrix), CalibrationFileError> {
     let invalid = |at: &str, found: &Value, expected| CalibrationFileError::Invalid {
         file: path.to_owned(),
         path: at.to_owned(),
@@ -133,7 +142,7 @@ fn from_result(path: &Path, value: &Value) -> Result<(String, Transform<Flange, 
         return Err(invalid("methods[].flange_from_sensor", found, "an object with a 4 × 4 matrix"));
     };
     let method = entry["method"].as_str().unwrap_or("?").to_owned();
-    Ok((method, checked(path, &matrix)?))
+    Ok((method, matrix))
 }
 
 fn matrix_of(value: &Value) -> Option<GivenMatrix> {

@@ -5,5 +5,6 @@ pub mod calibration_file;
 mod diagnosis_entry;
 pub mod result_file;
 pub mod scan_file;
+pub mod verification_file;
 
 pub use crate::text::digits;

@@ -129,7 +129,7 @@ impl Names {
     }
 }
 
-fn transform<Dst: Frame, Src: Frame>(transform: &Transform<Dst, Src>) -> Value {
+pub(super) fn transform<Dst: Frame, Src: Frame>(transform: &Transform<Dst, Src>) -> Value {
     let matrix = transform.matrix();
     let rows: Vec<Vec<f64>> = (0..4).map(|row| (0..4).map(|column| matrix[(row, column)]).collect()).collect();
     json!({

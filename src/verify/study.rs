@@ -11,6 +11,8 @@ use super::{Evaluation, NotEvaluated, evaluate};
 pub struct TargetCase {
     /// The user's name for it.
     pub name: String,
+    /// Its place among the session's further targets; `None` for the session's own.
+    pub further_idx: Option<usize>,
     /// Its data.
     pub problem: Problem,
     /// One entry a method that was run on it.
@@ -78,6 +80,8 @@ pub struct Calibration {
 pub struct TargetEvidence {
     /// The user's name for it.
     pub name: String,
+    /// Its place among the session's further targets; `None` for the session's own.
+    pub further_idx: Option<usize>,
     /// Its data.
     pub problem: Problem,
     /// One entry a calibration, in the order of [`Verification::calibrations`].
@@ -159,7 +163,12 @@ pub fn verify(
             watch.report(evidence.len() * calibrations.len() + rows.len(), total)?;
             rows.push(evaluate(&target.problem, &calibration.flange_from_sensor, target.touched_mm));
         }
-        evidence.push(TargetEvidence { name: target.name, problem: target.problem, rows });
+        evidence.push(TargetEvidence {
+            name: target.name,
+            further_idx: target.further_idx,
+            problem: target.problem,
+            rows,
+        });
     }
     Ok(Verification { calibrations, targets: evidence })
 }

@@ -60,6 +60,8 @@ fn misread_title(reading: &PoseReading) -> &'static str {
 const fn warning_title(warning: &Warning) -> &'static str {
     match warning {
         Warning::FewStations { .. } => "Few stations",
+        Warning::FewEdgePoints { .. } => "Few points on an edge",
+        Warning::OtherMinimum { .. } => "Another mounting fits as well",
         Warning::LittleRotation { .. } => "Little rotation",
         Warning::NearlyOneAxis { .. } => "Rotation about one axis",
         Warning::SideAmbiguous { .. } => "Uncertain side of the ball",
