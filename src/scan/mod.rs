@@ -7,6 +7,7 @@
 pub mod cloud;
 pub mod distances;
 pub mod error;
+pub mod examination;
 pub mod files;
 mod lanes;
 mod linear;
@@ -20,6 +21,7 @@ pub mod teeth;
 pub use cloud::{Cloud, ScanCapture};
 pub use distances::{NUM_DRAWN, random_distances};
 pub use error::ScanError;
+pub use examination::{Region, Shapes, Wanted, plane_regions, region_name, shapes};
 pub use plane::{Plane, PlaneAngle, PlaneEquation, PlaneFit, angle_between, fit_plane};
 pub use point_set::PointSet;
 pub use round::{Round, RoundKind, fit_round};

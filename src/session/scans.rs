@@ -8,11 +8,13 @@ use crate::scan::ScanCapture;
 
 use super::{Known, Reading, Session, Station, Target};
 
-/// One scan of a session.
+/// A scan of a session, or all scans of a part together.
 #[derive(Clone, Debug)]
 pub struct SessionScan {
-    /// Its station's label, with the further target's name before it where it is one's.
-    pub name: String,
+    /// The further target whose part was scanned; the session's own without.
+    pub target_name: Option<String>,
+    /// The label of its station; none for all scans of the part together.
+    pub station_label: Option<String>,
     /// What is known of the part.
     pub known: Known,
     /// Its profiles; poses are inverted for a sensor beside the robot.
@@ -20,45 +22,42 @@ pub struct SessionScan {
 }
 
 impl Session {
-    /// All scans in it, enabled stations only; none where no target is a workpiece.
+    /// All scans in it, of enabled stations only; for a part with several scans, all of them together come first. None where
+    /// no target is a workpiece.
     #[must_use]
     pub fn scans(&self) -> Vec<SessionScan> {
         let own = (self.target == Target::Workpiece).then_some((None, &self.known, &self.stations));
         let further = self.further.iter().filter(|further| further.target == Target::Workpiece);
-        let further = further.map(|further| (Some(further.name.as_str()), &further.known, &further.stations));
+        let further = further.map(|further| (Some(&further.name), &further.known, &further.stations));
         own.into_iter()
             .chain(further)
-            .flat_map(|(name, known, stations)| scans_of(self.mount, name, known, stations))
+            .flat_map(|(name, known, stations)| self.scans_of(name, known, stations))
             .collect()
+    }
+
+    fn scans_of(&self, target_name: Option<&String>, known: &Known, stations: &[Station]) -> Vec<SessionScan> {
+        let scan = |stations: &[&Station], station_label| SessionScan {
+            target_name: target_name.cloned(),
+            station_label,
+            known: *known,
+            captures: stations.iter().flat_map(|station| captures_of(self.mount, station)).collect(),
+        };
+        let used: Vec<&Station> = stations.iter().filter(|station| station.enabled).collect();
+        let together = (used.len() > 1).then(|| scan(&used, None));
+        let single = used.iter().map(|station| scan(&[*station], Some(station.label.clone())));
+        together.into_iter().chain(single).collect()
     }
 }
 
-fn scans_of<'a>(
-    mount: Mount,
-    target_name: Option<&'a str>,
-    known: &'a Known,
-    stations: &'a [Station],
-) -> impl Iterator<Item = SessionScan> + 'a {
-    stations.iter().filter(|station| station.enabled).map(move |station| SessionScan {
-        name: match target_name {
-            Some(target) if stations.len() > 1 => format!("{target}, {}", station.label),
-            Some(target) => target.to_owned(),
-            None => station.label.clone(),
-        },
-        known: *known,
-        captures: station
-            .captures
-            .iter()
-            .filter_map(|capture| match &capture.reading {
-                Reading::Profile(profile) => Some(ScanCapture {
-                    base_from_flange: match mount {
-                        Mount::OnFlange => capture.base_from_flange,
-                        Mount::Fixed => Transform::from_rigid(capture.base_from_flange.rigid().inverse()),
-                    },
-                    profile: Arc::clone(profile),
-                }),
-                Reading::Point(_) => None,
-            })
-            .collect(),
+fn captures_of(mount: Mount, station: &Station) -> impl Iterator<Item = ScanCapture> {
+    station.captures.iter().filter_map(move |capture| match &capture.reading {
+        Reading::Profile(profile) => Some(ScanCapture {
+            base_from_flange: match mount {
+                Mount::OnFlange => capture.base_from_flange,
+                Mount::Fixed => Transform::from_rigid(capture.base_from_flange.rigid().inverse()),
+            },
+            profile: Arc::clone(profile),
+        }),
+        Reading::Point(_) => None,
     })
 }
