@@ -43,9 +43,13 @@ pub fn difference(first: &Solution, second: &Solution) -> Difference {
     }
 }
 
-/// The paper's "maximum error": the largest coordinate of any station's ball relative to the first station's, mm.
+/// The paper's "maximum error": the largest coordinate of any station's ball relative to the first station's, mm; with a plate
+/// the largest distance of a point from its edge.
 #[must_use]
 pub fn maximum_error_mm(solution: &Solution) -> f64 {
+    if let Some(plate) = &solution.plate {
+        return plate.points.iter().map(|point| point.off_edge_mm.norm()).fold(0.0, f64::max);
+    }
     solution.stations.iter().map(|station| station.error_from_first_mm.amax()).fold(0.0, f64::max)
 }
 
@@ -79,11 +83,14 @@ impl Improvement {
     }
 }
 
-/// The paper's comparison: the largest arc (or, without sweeps, the bundle) against the fixed point.
+/// The paper's comparison: the largest arc (or, without sweeps, the bundle) against the fixed point; with a plate the bundle
+/// against the published method.
 #[must_use]
 pub fn improvement(results: &[MethodResult]) -> Option<Improvement> {
-    let baseline = solution_of(results, Method::BallFixedPoint)?;
-    let better = solution_of(results, Method::BallMaxArc).or_else(|| solution_of(results, Method::BallBundle))?;
+    let solution = |method| solution_of(results, method);
+    let baseline = solution(Method::BallFixedPoint).or_else(|| solution(Method::PlateOrthogonal))?;
+    let candidates = [Method::BallMaxArc, Method::BallBundle, Method::PlateBundle];
+    let better = candidates.into_iter().find_map(solution)?;
     Some(Improvement {
         method: better.method,
         error_mm: maximum_error_mm(better),
