@@ -6,6 +6,12 @@ use crate::watch::{Cancelled, Watch};
 
 use super::{Evaluation, NotEvaluated, evaluate};
 
+/// An error on other data that is so many times that of a calibration computed from them is a contradiction, not chance:
+/// own data flatter by some tens of percent at most.
+const DOUBT_RATIO: f64 = 3.0;
+/// Errors below this are those of a good arm, whatever their ratio, mm.
+const LEAST_DOUBT_MM: f64 = 0.05;
+
 /// A target with its data, and what the methods made of it.
 #[derive(Clone, Debug)]
 pub struct TargetCase {
@@ -102,6 +108,26 @@ impl Verification {
     #[must_use]
     pub fn cell(&self, calibration_idx: usize, target_idx: usize) -> Option<&Result<Evaluation, NotEvaluated>> {
         self.targets.get(target_idx)?.rows.get(calibration_idx)
+    }
+
+    /// Whether other targets bear out the answer, the best calibration of the first target: on none of them its error is far
+    /// above that of the calibration computed from that very target. `None` without such a target.
+    #[must_use]
+    pub fn is_borne_out(&self) -> Option<bool> {
+        let best = Method::BEST_FIRST.into_iter().find_map(|method| {
+            let origin = Origin::Solved { target_idx: 0, method };
+            self.calibrations.iter().position(|calibration| calibration.origin == origin)
+        })?;
+        let mut held_out = self.targets.iter().enumerate().skip(1).filter_map(|(target_idx, target)| {
+            let rms_mm = |idx: usize| Some(target.rows.get(idx)?.as_ref().ok()?.figures.rms_mm);
+            let own = self.calibrations.iter().position(
+                |calibration| matches!(calibration.origin, Origin::Solved { target_idx: from, .. } if from == target_idx),
+            )?;
+            Some((rms_mm(best)?, rms_mm(own)?))
+        });
+        let first = held_out.next()?;
+        let is_fine = |(of_best, of_own): (f64, f64)| of_best < LEAST_DOUBT_MM || of_best < DOUBT_RATIO * of_own;
+        Some(std::iter::once(first).chain(held_out).all(is_fine))
     }
 
     /// The sensor's middle as the data have it: the mean of all points seen, in the sensor frame, mm. Where calibrations

@@ -197,7 +197,7 @@ fn stations(ui: &mut Ui, view: &View<'_>, shown_idx: usize, state: &mut CrossTar
                         pos2(top.x, top.y.min(baseline - 1.5)),
                         pos2((right - 0.5).max(top.x + 1.0), baseline),
                     );
-                    canvas.painter.rect_filled(bar, 0.0, mark.color);
+                    mark.paint_bar(&canvas.painter, bar);
                     if *is_shown {
                         let stroke = Stroke::new(1.2, theme::palette(ui).text);
                         canvas.painter.rect_stroke(bar, 0.0, stroke, egui::StrokeKind::Inside);

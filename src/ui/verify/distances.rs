@@ -15,8 +15,8 @@ use super::space::{self, Camera};
 
 /// Parts of a row: calibration, mean, sd, maximum to the lines and to the plane, angle, gap.
 const PARTS: [f32; 9] = [238.0, 70.0, 70.0, 70.0, 70.0, 70.0, 70.0, 96.0, 78.0];
-/// Height of a histogram's card, points.
-const HISTOGRAM_HEIGHT: f32 = 232.0;
+/// Least height of a histogram's card, points.
+const LEAST_HISTOGRAM_HEIGHT: f32 = 200.0;
 /// From this width, points, the picture stands beside the histograms.
 const BESIDE_FROM: f32 = 640.0;
 
@@ -78,15 +78,18 @@ pub(super) fn show(ui: &mut Ui, view: &View<'_>, context: &mut PanelContext<'_>,
     let Some(shown) = shown_idx.and_then(|idx| rows.get(idx)) else { return };
     let Ok(distances) = &shown.outcome else { return };
     let width = ui.available_width();
-    let height = 2.0 * HISTOGRAM_HEIGHT + theme::GAP;
+    // What is left of the window, so that there is nothing to scroll where there is room.
+    let left_over = ui.clip_rect().bottom() - ui.cursor().top() - 4.0;
+    let height = left_over.max(2.0 * LEAST_HISTOGRAM_HEIGHT + theme::GAP);
+    let each = (height - theme::GAP) / 2.0;
     if width < BESIDE_FROM {
-        histograms(ui, &rows, &mut state.is_fitted);
+        histograms(ui, &rows, each, &mut state.is_fitted);
         picture(ui, height, shown.mark, distances, &mut state.camera);
         return;
     }
     let area = Rect::from_min_size(ui.cursor().min, vec2(width, height));
     let (left, right) = area.split_left_right_at_x(area.left() + ((width - theme::GAP) * 0.46).round());
-    histograms(&mut ui.new_child(UiBuilder::new().max_rect(left)), &rows, &mut state.is_fitted);
+    histograms(&mut ui.new_child(UiBuilder::new().max_rect(left)), &rows, each, &mut state.is_fitted);
     let right = right.with_min_x(right.left() + theme::GAP);
     let mut beside = ui.new_child(UiBuilder::new().max_rect(right));
     picture(&mut beside, height, shown.mark, distances, &mut state.camera);
@@ -205,7 +208,7 @@ pub(super) fn select_cell(
     response.on_hover_text(if has_seen { words::OWN_DATA_HINT } else { words::OTHER_DATA_HINT }).clicked()
 }
 
-fn histograms(ui: &mut Ui, rows: &[Row<'_>], is_fitted: &mut [bool; 2]) {
+fn histograms(ui: &mut Ui, rows: &[Row<'_>], height: f32, is_fitted: &mut [bool; 2]) {
     let to_line: fn(&EdgePoint) -> f64 = |point| point.to_line_mm;
     let to_plane: fn(&EdgePoint) -> f64 = |point| point.to_plane_mm;
     let cards =
@@ -219,7 +222,7 @@ fn histograms(ui: &mut Ui, rows: &[Row<'_>], is_fitted: &mut [bool; 2]) {
         widgets::card_with_height(
             ui,
             title,
-            HISTOGRAM_HEIGHT,
+            height,
             |_| {},
             |ui| {
                 histogram::legend(ui, &series.iter().map(|series| series.mark).collect::<Vec<_>>());

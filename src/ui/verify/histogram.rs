@@ -44,7 +44,7 @@ pub fn show(ui: &mut Ui, name: &str, x_title: &str, series: &[Series<'_>], is_fi
             let top = canvas.at(left_mm, count as f64);
             let right = canvas.at(left_mm + bar_mm, 0.0).x;
             let bar = Rect::from_min_max(top, pos2((right - 1.0).max(top.x + 1.0), baseline));
-            canvas.painter.rect_filled(bar, 1.0, series.mark.color);
+            series.mark.paint_bar(&canvas.painter, bar);
             if canvas.response.hover_pos().is_some_and(|pointer| bar.contains(pointer)) {
                 hovered = Some((bar, &series.mark.name, bin, count));
             }

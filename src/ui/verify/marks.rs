@@ -22,25 +22,49 @@ pub struct Mark {
     pub color: Color32,
     /// Its marker.
     pub shape: MarkerShape,
+    /// Which of the targets it was computed from, if not the first: the same method on another target looks hollow.
+    further: Option<usize>,
 }
 
 impl Mark {
     /// One entry a calibration, in their order.
     pub fn all(verification: &Verification) -> Vec<Self> {
         let of = |origin: &Origin| {
+            let further = match origin {
+                Origin::Solved { target_idx, .. } => Some(*target_idx).filter(|idx| *idx > 0),
+                _ => None,
+            };
             let (color, shape) = match (origin, origin.method()) {
                 (_, Some(method)) => (theme::method_color(method), theme::method_marker(method)),
                 (Origin::Joint { .. }, _) => (JOINT, MarkerShape::Diamond),
                 _ => (GIVEN, MarkerShape::Down),
             };
-            Self { name: words::calibration_name(origin, verification), color, shape }
+            Self { name: words::calibration_name(origin, verification), color, shape, further }
         };
         verification.calibrations.iter().map(|calibration| of(&calibration.origin)).collect()
     }
 
     /// The marker.
     pub fn paint(&self, painter: &egui::Painter, at: Pos2) {
-        charts::marker(painter, self.shape, at, 4.5, self.color, Stroke::NONE);
+        charts::marker(painter, self.shape, at, 4.5, self.fill(), self.stroke());
+    }
+
+    /// A bar of a chart.
+    pub fn paint_bar(&self, painter: &egui::Painter, bar: Rect) {
+        painter.rect(bar, 1.0, self.fill(), self.stroke(), egui::StrokeKind::Inside);
+    }
+
+    /// Solid on the first target, and fainter with each further one.
+    fn fill(&self) -> Color32 {
+        match self.further {
+            None => self.color,
+            Some(1) => self.color.gamma_multiply(0.28),
+            Some(_) => Color32::TRANSPARENT,
+        }
+    }
+
+    fn stroke(&self) -> Stroke {
+        if self.further.is_some() { Stroke::new(1.2, self.color) } else { Stroke::NONE }
     }
 
     /// The marker and the name at the left of a cell, cut where there is no room.
@@ -53,6 +77,8 @@ impl Mark {
 
     /// Its entry in a legend.
     pub fn legend_entry(&self) -> LegendEntry {
-        LegendEntry { glyph: LegendGlyph::Solid(self.shape), color: self.color, text: self.name.clone() }
+        let glyph =
+            if self.further.is_some() { LegendGlyph::Hollow(self.shape) } else { LegendGlyph::Solid(self.shape) };
+        LegendEntry { glyph, color: self.color, text: self.name.clone() }
     }
 }

@@ -44,8 +44,10 @@ fn side_by_side(ui: &mut Ui, view: &View<'_>, chosen: &mut [Option<String>; 2]) 
     let place = |name: &Option<String>, otherwise: usize| {
         view.marks.iter().position(|mark| Some(&mark.name) == name.as_ref()).unwrap_or(otherwise)
     };
-    // The published one beside the one to use, as they are listed.
-    let places = [place(&chosen[0], 0), place(&chosen[1], calibrations.len().min(2) - 1)];
+    // The published method beside the one to use, which is the last of its target.
+    let of_first = |calibration: &Calibration| matches!(calibration.origin, Origin::Solved { target_idx: 0, .. });
+    let last = calibrations.iter().rposition(of_first).unwrap_or(0).max(1);
+    let places = [place(&chosen[0], 0), place(&chosen[1], last)];
     widgets::card(
         ui,
         words::MATRICES,

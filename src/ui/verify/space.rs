@@ -7,7 +7,7 @@ use crate::calibrate::Edge;
 use crate::geometry::{Mat3, Vec3, so3};
 use crate::text::verify as words;
 use crate::ui::charts::arrow;
-use crate::ui::{charts, theme, widgets};
+use crate::ui::{theme, widgets};
 use crate::verify::Distances;
 
 use super::marks::Mark;
@@ -28,20 +28,34 @@ impl Default for Camera {
     }
 }
 
+impl Camera {
+    /// From the plate's frame to x to the right, y up, z towards the eye.
+    fn screen_from_plate(&self) -> Mat3 {
+        let pitched = so3::exp(Vec3::x() * (self.pitch - std::f64::consts::FRAC_PI_2));
+        (pitched * so3::exp(Vec3::z() * self.yaw)).to_rotation_matrix().into_inner()
+    }
+}
+
 /// Turn a point of dragging, rad.
 const TURN_A_POINT: f64 = 0.008;
 /// Turn a press of an arrow key, rad.
 const TURN_A_KEY: f64 = 0.12;
 /// Deviations are enlarged until the largest is this part of the picture.
 const DEVIATION_PART: f64 = 0.13;
+/// Room between the outermost points and the border of the plane, as a part of their extent.
+const MARGIN_PART: f64 = 0.07;
+/// Room around the plane for letters, caption and hint, points.
+const ROOM_AROUND: Vec2 = vec2(28.0, 44.0);
 /// Lines of the plane's mesh each way.
 const MESH_LINES: u8 = 6;
 
 /// What is drawn, in the plate's frame about the centroid, mm.
 struct Scene {
     plate_from_base: Mat3,
-    centroid: Vec3,
-    reach_mm: f64,
+    /// The middle of the points, in the base.
+    middle: Vec3,
+    /// Half the extent of the points along the plate's axes, with a margin.
+    half_mm: [f64; 2],
     enlarged: f64,
 }
 
@@ -52,14 +66,34 @@ impl Scene {
         let along = distances.lines[0].direction - up * up.dot(&distances.lines[0].direction);
         let along = along.try_normalize(0.0).unwrap_or_else(Vec3::x);
         let plate_from_base = Mat3::from_columns(&[along, up.cross(&along), up]).transpose();
-        let reach_mm =
-            distances.points.iter().map(|point| (point.point_in_base_mm - centroid).norm()).fold(1.0, f64::max);
+        let in_plate = || distances.points.iter().map(|point| plate_from_base * (point.point_in_base_mm - centroid));
+        let range = |axis: usize| {
+            in_plate()
+                .map(|point| point[axis])
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
+        };
+        let [x, y] = [range(0), range(1)];
+        let centre = Vec3::new(f64::midpoint(x[0], x[1]), f64::midpoint(y[0], y[1]), 0.0);
+        let margin = MARGIN_PART * (x[1] - x[0]).max(y[1] - y[0]).max(1.0);
+        let half_mm = [x, y].map(|[low, high]| (high - low) / 2.0 + margin);
         let worst_mm = distances.points.iter().map(|point| point.to_line_mm).fold(0.0, f64::max);
-        Self { plate_from_base, centroid, reach_mm, enlarged: enlarged(DEVIATION_PART * reach_mm, worst_mm) }
+        let reach_mm = half_mm[0].max(half_mm[1]);
+        Self {
+            plate_from_base,
+            middle: centroid + plate_from_base.transpose() * centre,
+            half_mm,
+            enlarged: enlarged(DEVIATION_PART * reach_mm, worst_mm),
+        }
     }
 
     fn in_plate(&self, point_in_base: Vec3) -> Vec3 {
-        self.plate_from_base * (point_in_base - self.centroid)
+        self.plate_from_base * (point_in_base - self.middle)
+    }
+
+    /// The corners of the plane that is drawn.
+    fn corners(&self) -> [Vec3; 4] {
+        let [x, y] = self.half_mm;
+        [[-x, -y], [x, -y], [x, y], [-x, y]].map(|[x, y]| Vec3::new(x, y, 0.0))
     }
 }
 
@@ -83,7 +117,7 @@ pub fn show(ui: &mut Ui, distances: &Distances, mark: &Mark, camera: &mut Camera
     let view = View::new(place, &scene, camera);
     let painter = ui.painter().with_clip_rect(place.intersect(ui.clip_rect()));
     let palette = theme::palette(ui);
-    paint_plane(&painter, &scene, &view, distances, palette.text_dim);
+    paint_plane(&painter, &scene, &view, palette.text_dim);
     paint_lines(&painter, &scene, &view, distances, palette.text);
     let mut seen: Vec<(Pos2, usize)> = Vec::with_capacity(distances.points.len());
     for (idx, point) in distances.points.iter().enumerate() {
@@ -95,7 +129,8 @@ pub fn show(ui: &mut Ui, distances: &Distances, mark: &Mark, camera: &mut Camera
         seen.push((at, idx));
     }
     for (at, _) in &seen {
-        charts::marker(&painter, mark.shape, *at, 4.5, mark.color, Stroke::new(0.8, palette.surface));
+        painter.circle_filled(*at, 5.0, palette.surface.gamma_multiply(0.7));
+        mark.paint(&painter, *at);
     }
     paint_triad(&painter, &scene, &view, place, theme::axis_colors(ui));
     let font = FontId::proportional(theme::SMALL_SIZE);
@@ -168,14 +203,14 @@ struct View {
 
 impl View {
     fn new(place: Rect, scene: &Scene, camera: &Camera) -> Self {
-        let pitched = so3::exp(Vec3::x() * (camera.pitch - std::f64::consts::FRAC_PI_2));
-        let turned = pitched * so3::exp(Vec3::z() * camera.yaw);
-        let room = f64::from(place.width().min(place.height() * 1.35)) * 0.46;
-        Self {
-            screen_from_plate: turned.to_rotation_matrix().into_inner(),
-            centre: place.center() + vec2(0.0, 6.0),
-            points_a_mm: room * camera.zoom / scene.reach_mm,
-        }
+        let screen_from_plate = camera.screen_from_plate();
+        // As large as the plane fits as it is seen at first, so that turning does not make it grow or shrink.
+        let at_first = Camera::default().screen_from_plate();
+        let half =
+            |axis: usize| scene.corners().iter().map(|corner| (at_first * corner)[axis].abs()).fold(1.0, f64::max);
+        let room = place.shrink2(ROOM_AROUND).size() / 2.0;
+        let fitted = (f64::from(room.x.max(1.0)) / half(0)).min(f64::from(room.y.max(1.0)) / half(1));
+        Self { screen_from_plate, centre: place.center(), points_a_mm: fitted * camera.zoom }
     }
 
     /// Where a point of the plate's frame is on the screen.
@@ -190,29 +225,16 @@ impl View {
     }
 }
 
-fn paint_plane(painter: &Painter, scene: &Scene, view: &View, distances: &Distances, color: Color32) {
-    let in_plate = || distances.points.iter().map(|point| scene.in_plate(point.point_in_base_mm));
-    let range = |axis: usize| {
-        let (low, high) = in_plate()
-            .map(|point| point[axis])
-            .fold((0.0_f64, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
-        let margin = 0.08 * scene.reach_mm;
-        [low - margin, high + margin]
-    };
-    let [x, y] = [range(0), range(1)];
-    let corner = |x: f64, y: f64| view.at(Vec3::new(x, y, 0.0));
-    let corners = vec![corner(x[0], y[0]), corner(x[1], y[0]), corner(x[1], y[1]), corner(x[0], y[1])];
-    painter.add(Shape::convex_polygon(
-        corners,
-        color.gamma_multiply(0.07),
-        Stroke::new(1.0, color.gamma_multiply(0.4)),
-    ));
+fn paint_plane(painter: &Painter, scene: &Scene, view: &View, color: Color32) {
+    let corners = scene.corners().map(|corner| view.at(corner));
+    let outline = Stroke::new(1.0, color.gamma_multiply(0.4));
+    painter.add(Shape::convex_polygon(corners.to_vec(), color.gamma_multiply(0.07), outline));
+    let [a, b, c, d] = corners;
     for number in 1..MESH_LINES {
-        let part = f64::from(number) / f64::from(MESH_LINES);
-        let at = |[low, high]: [f64; 2]| low + part * (high - low);
+        let part = f32::from(number) / f32::from(MESH_LINES);
         let stroke = Stroke::new(1.0, color.gamma_multiply(0.16));
-        painter.line_segment([corner(at(x), y[0]), corner(at(x), y[1])], stroke);
-        painter.line_segment([corner(x[0], at(y)), corner(x[1], at(y))], stroke);
+        painter.line_segment([a.lerp(b, part), d.lerp(c, part)], stroke);
+        painter.line_segment([a.lerp(d, part), b.lerp(c, part)], stroke);
     }
 }
 
@@ -223,7 +245,7 @@ fn paint_lines(painter: &Painter, scene: &Scene, view: &View, distances: &Distan
         let (low, high) = on_edge
             .map(|point| along(&point.point_in_base_mm))
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
-        let margin = 0.05 * scene.reach_mm;
+        let margin = 0.5 * MARGIN_PART * scene.half_mm[0].max(scene.half_mm[1]);
         let ends = [low - margin, high + margin]
             .map(|length| view.at(scene.in_plate(line.point_mm + line.direction * length)));
         painter.line_segment(ends, Stroke::new(1.8, color));

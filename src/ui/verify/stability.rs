@@ -16,7 +16,7 @@ use super::matrices::{self, MatricesState};
 use super::panel::{View, name_field};
 
 /// Width of the column of labels, points.
-const LABEL_WIDTH: f32 = 96.0;
+const LABEL_WIDTH: f32 = 112.0;
 /// Least width of a coordinate, points: a sign and three decimals.
 const LEAST_WIDTH: f32 = 62.0;
 /// Width of a field for a coordinate, points.
@@ -247,7 +247,9 @@ fn columns_and_rows(ui: &mut Ui, columns: &[Column<'_>], rows: &[Measurement]) {
             vector(&mut cells, width, value, is_signed);
         }
     };
-    foot(ui, words::MEAN, &|stability| (stability.mean_mm, true));
+    if columns.iter().any(|column| column.stability.is_touched) {
+        foot(ui, words::MEAN, &|stability| (stability.mean_mm, true));
+    }
     foot(ui, words::THREE_DELTA, &|stability| (stability.three_std_mm(), false));
     let mut cells = RowCells::new(ui, theme::ROW_HEIGHT);
     cells.text(LABEL_WIDTH, words::THREE_DELTA_3D);
