@@ -1,11 +1,12 @@
 //! Wording about scanned parts: what `handeye scan` prints and what the Verify step shows.
 
+use crate::calibrate::Method;
 use crate::scan::{Deviation, PlaneEquation, PlaneFit, Region, Round, RoundKind, Shapes, Teeth, angle_between};
 use crate::session::{Known, SessionScan};
 use crate::text::digits::{decimals_for, fixed, signed};
 use crate::verify::Figures;
 
-use super::plural;
+use super::{method_name, plural};
 
 /// Decimals of distances from planes, mm.
 pub const DISTANCE_DECIMALS: usize = 3;
@@ -231,6 +232,17 @@ pub fn no_calibration(reason: &str) -> String {
 }
 /// Why a session without another target has no calibration of its own.
 pub const ONLY_A_WORKPIECE: &str = "the session has no target from which one is computed";
+/// The truth of a simulated session.
+pub const TRUTH: &str = "truth of the simulation";
+/// A session that was not simulated.
+pub const NO_TRUTH: &str = "the session was not simulated, so it knows no truth";
+/// A region without points.
+pub const EMPTY_REGION: &str = "there are no points inside of that; draw around some, or click on one";
+/// A method without a result.
+#[must_use]
+pub fn no_result_of(method: Method) -> String {
+    format!("{} has no result", method_name(method))
+}
 /// No scan has that name.
 #[must_use]
 pub fn no_such_scan(wanted: &str, names: &[String]) -> String {
