@@ -9,12 +9,14 @@
 
 pub mod ball;
 pub mod error;
+pub mod joint;
 pub mod method;
 pub mod observation;
 pub mod plate;
 pub mod problem;
 pub mod reduced;
 pub mod rotation_start;
+mod shared_warnings;
 pub mod solution;
 pub mod solver;
 pub mod uncertainty;
@@ -23,11 +25,14 @@ pub mod verdict;
 pub mod warning;
 
 pub use error::SolveError;
+pub use joint::{JointSolution, JointTarget, solve_joint};
 pub use method::{Method, MethodResult, best_available, solution_of, solve, solve_all};
+pub use plate::PlateReduced;
 pub use problem::{
     BallProblem, Capture, Edge, Mount, Noise, PlateProblem, PlateStation, Problem, Reading, Side, SideChoice, Station,
 };
 pub use reduced::Reduced;
+pub(crate) use shared_warnings::{ONE_AXIS_RATIO, RECOMMENDED_SPAN_DEG};
 pub use solution::{
     AboveStated, EstimatedRadius, NoiseModel, PlateFound, PlatePoint, RmsMax, Solution, Starts, StationSolution, Sweep,
     SweepPoint, Uncertainty,

@@ -4,7 +4,7 @@ use nalgebra::{Matrix6, Vector6};
 
 use crate::geometry::{Flange, Mat3, Rigid, Sensor, Transform, Vec3};
 
-use super::{Edge, Method, Mount, Reduced, Side, Warning};
+use super::{Edge, Method, Mount, PlateReduced, Reduced, Side, Warning};
 
 /// Root mean square and maximum of some distances, mm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -199,6 +199,8 @@ pub struct PlateFound {
     pub points: Vec<PlatePoint>,
     /// How many starts there were, and how many led here.
     pub starts: Starts,
+    /// The data at the minimum, for validation and diagnosis.
+    pub reduced: PlateReduced,
 }
 
 /// A calibration.

@@ -59,6 +59,18 @@ pub fn uncertainty(
     };
     let factor = spread.factor() * doubt_in_the_noise(degrees_of_freedom);
     let right_covariance = sensor_block(&(inverse * factor + by_radius * by_radius.transpose()));
+    of_sensor(&right_covariance, degrees_of_freedom, flange_from_sensor, reference_point_in_sensor_mm)
+}
+
+/// The figures for a covariance of (rotation, translation) of the sensor, a right perturbation along the sensor's axes, in
+/// which the doubt in the noise itself is counted ([`doubt_in_the_noise`]).
+pub(crate) fn of_sensor(
+    right_covariance: &Matrix6<f64>,
+    degrees_of_freedom: f64,
+    flange_from_sensor: &Rigid,
+    reference_point_in_sensor_mm: Vec3,
+) -> Uncertainty {
+    let by_sensor = point_by_sensor(reference_point_in_sensor_mm);
     let to_flange_axes = to_flange_axes(flange_from_sensor);
     let covariance = to_flange_axes * right_covariance * to_flange_axes.transpose();
     let std = |idx: usize| covariance[(idx, idx)].max(0.0).sqrt();
@@ -82,7 +94,7 @@ pub fn uncertainty(
 }
 
 /// By how much errors vary more where the noise was learnt from the same data: the variance of Student's t.
-fn doubt_in_the_noise(degrees_of_freedom: f64) -> f64 {
+pub(crate) fn doubt_in_the_noise(degrees_of_freedom: f64) -> f64 {
     /// With less the variance is unbounded; twice as much is as good as "hardly known".
     const LEAST: f64 = 4.0;
     if degrees_of_freedom.is_infinite() {

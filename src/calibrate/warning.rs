@@ -12,6 +12,22 @@ pub enum Warning {
         /// A number that makes the figures trustworthy.
         recommended: usize,
     },
+    /// Hardly more points on the plate's edges than unknowns.
+    FewEdgePoints {
+        /// Points on edge p.
+        num_p: usize,
+        /// Points on edge q.
+        num_q: usize,
+        /// A number on each that makes the figures trustworthy.
+        recommended: usize,
+    },
+    /// Another calibration fits the data about as well.
+    OtherMinimum {
+        /// Its residual over that of this one (RMS).
+        ratio: f64,
+        /// How far it puts the sensor from where this one has it, mm.
+        distance_mm: f64,
+    },
     /// The orientations are alike.
     LittleRotation {
         /// Largest rotation between two stations, degrees.
@@ -125,6 +141,8 @@ impl Warning {
     pub const fn code(&self) -> &'static str {
         match self {
             Self::FewStations { .. } => "few-stations",
+            Self::FewEdgePoints { .. } => "few-edge-points",
+            Self::OtherMinimum { .. } => "other-minimum",
             Self::LittleRotation { .. } => "little-rotation",
             Self::NearlyOneAxis { .. } => "nearly-one-axis",
             Self::SideAmbiguous { .. } => "side-ambiguous",
@@ -149,6 +167,8 @@ impl Warning {
         matches!(
             self,
             Self::FewStations { .. }
+                | Self::FewEdgePoints { .. }
+                | Self::OtherMinimum { .. }
                 | Self::LittleRotation { .. }
                 | Self::NearlyOneAxis { .. }
                 | Self::SideAmbiguous { .. }

@@ -1,9 +1,10 @@
 //! What the poses alone show: too little rotation, one axis, twins, travel and steps.
 
-use crate::calibrate::ball::{MIN_STATIONS, ONE_AXIS_RATIO, RECOMMENDED_SPAN_DEG};
+use crate::calibrate::ball::MIN_STATIONS;
 use crate::calibrate::rotation_start::{PoseGeometry, rotation_span};
 use crate::calibrate::{
-    BallProblem, Capture, Method, Mount, Reading, SolveError, Station, best_available, solution_of,
+    BallProblem, Capture, Method, Mount, ONE_AXIS_RATIO, RECOMMENDED_SPAN_DEG, Reading, SolveError, Station,
+    best_available, solution_of,
 };
 use crate::geometry::so3::{self, nearest_rotation};
 use crate::geometry::{Mat3, Rigid, Vec3, stats};

@@ -7,6 +7,7 @@ mod files;
 mod imports;
 mod keeping;
 mod studies;
+mod verifying;
 
 use std::collections::VecDeque;
 use std::path::PathBuf;
@@ -16,6 +17,7 @@ use crate::calibrate::validation::Bootstrap;
 use crate::diagnose::{Diagnosis, ReadingFit};
 use crate::plan::{Limits, Plan, PlanRefusal};
 use crate::session::edit::CellValue;
+use crate::verify::{Calibration, Verification};
 use crate::watch::Cancelled;
 
 use super::jobs::{JobOutcome, Slot, Wake};
@@ -29,6 +31,7 @@ use self::files::{Loaded, Look, Save, SaveOutcome};
 pub use self::imports::ImportDraft;
 use self::imports::Imports;
 pub use self::studies::Results;
+use self::verifying::Added;
 
 /// How serious a notice is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,6 +101,10 @@ pub struct Workbench {
     plan: Study<Result<Plan, PlanRefusal>>,
     readings: Study<Vec<ReadingFit>>,
     bootstrap: Study<Bootstrap>,
+    verification: Study<Verification>,
+    /// Calibrations from elsewhere, judged along with the session's own.
+    given: Vec<Calibration>,
+    adding: Slot<Added>,
     imports: Imports,
     exporting: Slot<Exported>,
     cell: LiveCell,
@@ -130,6 +137,9 @@ impl Workbench {
             plan: Study::default(),
             readings: Study::default(),
             bootstrap: Study::default(),
+            verification: Study::default(),
+            given: Vec::new(),
+            adding: Slot::default(),
             imports: Imports::default(),
             exporting: Slot::default(),
             cell: LiveCell::default(),
@@ -237,6 +247,8 @@ impl Workbench {
             || self.plan.is_running()
             || self.readings.is_running()
             || self.bootstrap.is_running()
+            || self.verification.is_running()
+            || self.adding.is_running()
             || self.imports.is_busy()
             || self.exporting.is_running()
     }
@@ -285,6 +297,9 @@ impl Workbench {
                 self.plan.clear();
                 self.start_planning();
             }
+            Command::AddFurther(path) => self.start_adding_further(path),
+            Command::GiveCalibration(calibration) => self.give_calibration(*calibration),
+            Command::WithdrawCalibration(name) => self.withdraw_calibration(&name),
             Command::Cell(command) => self.command_cell(*command),
             Command::DismissNotice(id) => self.notices.retain(|notice| notice.id != id),
         }
@@ -320,12 +335,17 @@ impl Workbench {
             ("planning", self.plan.poll()),
             ("trying other conventions", self.readings.poll()),
             ("the bootstrap", self.bootstrap.poll()),
+            ("verifying", self.verification.poll()),
         ] {
             let Some(ended) = ended else { continue };
             changed = true;
             if !matches!(ended, JobOutcome::Done(())) {
                 self.notify_broken(what, &ended);
             }
+        }
+        if let Some(outcome) = self.adding.poll() {
+            changed = true;
+            self.take_added(outcome);
         }
         let imported = self.poll_imports();
         let exported = self.poll_exports();

@@ -2,6 +2,7 @@
 
 use crate::calibrate::observation::{CentreObservation, State};
 use crate::calibrate::rotation_start::{PoseGeometry, rotation_span};
+use crate::calibrate::shared_warnings::{rotation_warnings, stands_out};
 use crate::calibrate::solver::{Gradient, Minimum, covariance_for_unit_noise};
 use crate::calibrate::uncertainty::{Spread, change_by_radius, uncertainty};
 use crate::calibrate::validation::leave_one_out;
@@ -15,17 +16,6 @@ use super::RECOMMENDED_STATIONS;
 
 /// With five stations six numbers judge nine unknowns; fewer stations than this are said to be few.
 const FEW_BELOW: usize = 6;
-/// Below this rotation span the residual says little: 62° gave 0.8 mm between halves of real data, 20° gave 4 mm.
-pub(crate) const RECOMMENDED_SPAN_DEG: f64 = 40.0;
-/// Rotations this many times smaller about one axis than about another leave that direction weak.
-pub(crate) const ONE_AXIS_RATIO: f64 = 8.0;
-/// A left-out error this many times the median of the others, and not small in itself, is one to look at.
-const STANDS_OUT_RATIO: f64 = 4.0;
-/// So is its residual, by this factor at least.
-const RESIDUAL_RATIO: f64 = 2.5;
-/// Left-out errors below this are noise whatever their ratio, mm: the resolution of a good arm.
-const STANDS_OUT_MM: f64 = 0.05;
-
 /// What a method knows of a station besides its observations.
 #[derive(Clone, Debug)]
 pub(super) struct StationFacts<'a> {
@@ -152,18 +142,7 @@ impl Found<'_> {
         if num_stations < FEW_BELOW {
             self.warnings.push(Warning::FewStations { num_stations, recommended: RECOMMENDED_STATIONS });
         }
-        if span_rad.to_degrees() < RECOMMENDED_SPAN_DEG {
-            self.warnings.push(Warning::LittleRotation {
-                span_deg: span_rad.to_degrees(),
-                recommended_deg: RECOMMENDED_SPAN_DEG,
-            });
-        }
-        let [least, _, most] = self.poses.axis_movements;
-        let ratio = (most / least).sqrt();
-        if ratio > ONE_AXIS_RATIO {
-            self.warnings
-                .push(Warning::NearlyOneAxis { ratio, axis_in_flange: self.poses.common_axis_in_flange.into() });
-        }
+        self.warnings.extend(rotation_warnings(span_rad, &self.poses));
         if !self.minimum.converged {
             self.warnings.push(Warning::NotConverged { num_iterations: self.minimum.num_iterations });
         }
@@ -184,21 +163,4 @@ pub(super) fn first_pose(station: &Station) -> &Rigid {
 
 fn rms_max(distances: impl Iterator<Item = f64> + Clone) -> RmsMax {
     RmsMax { rms_mm: stats::rms(distances.clone()), max_mm: stats::max(distances) }
-}
-
-/// The station with the largest left-out error, if that is far above the others' and its residual is as well: a large
-/// left-out error alone is that of a station which the result hangs on.
-fn stands_out(left_out: &[Option<f64>], in_sample: &[f64]) -> Option<(usize, f64, f64)> {
-    let errors: Vec<f64> = left_out.iter().copied().collect::<Option<_>>()?;
-    let (station, error_mm) = errors.iter().copied().enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
-    let typical_mm = median_of_others(&errors, station);
-    let leads = in_sample[station] > RESIDUAL_RATIO * median_of_others(in_sample, station);
-    (leads && error_mm > STANDS_OUT_MM && error_mm > STANDS_OUT_RATIO * typical_mm)
-        .then_some((station, error_mm, typical_mm))
-}
-
-fn median_of_others(values: &[f64], left_out: usize) -> f64 {
-    let mut others: Vec<f64> =
-        values.iter().enumerate().filter(|(idx, _)| *idx != left_out).map(|(_, value)| *value).collect();
-    stats::median(&mut others)
 }

@@ -9,6 +9,7 @@
 
 use crate::calibrate::observation::{CentreObservation, State};
 use crate::calibrate::rotation_start::PoseGeometry;
+use crate::calibrate::shared_warnings::{first_refusal, refused_captures};
 use crate::calibrate::uncertainty::Spread;
 use crate::calibrate::{BallProblem, Method, Reading, Solution, SolveError, Station, Warning};
 use crate::fit::ArcFit;
@@ -17,7 +18,6 @@ use crate::geometry::{Rigid, stats};
 use super::assemble::{Found, StationFacts, first_pose};
 use super::passes::settle;
 use super::profile_sums::profile_sums;
-use super::refused::{first_refusal, refused_captures};
 use super::{MIN_STATIONS, fixed_point, max_arc};
 
 /// Noise below this (mm) is rounding; weights are taken as of this noise.

@@ -6,6 +6,7 @@
 
 use crate::calibrate::observation::{CentreObservation, State};
 use crate::calibrate::rotation_start::PoseGeometry;
+use crate::calibrate::shared_warnings::{first_refusal, refused_captures};
 use crate::calibrate::solver::{Normal, minimise};
 use crate::calibrate::uncertainty::Spread;
 use crate::calibrate::{BallProblem, Method, Reading, Side, SideChoice, Solution, SolveError, Station, Warning};
@@ -15,7 +16,6 @@ use crate::geometry::{Rigid, Vec3, stats};
 use super::MIN_STATIONS;
 use super::assemble::{Found, StationFacts, first_pose};
 use super::passes::change_by_radius;
-use super::refused::{first_refusal, refused_captures};
 use super::side::{SideCandidate, resolve_sides};
 
 /// Below this cost ratio the data hardly tell the sides apart.

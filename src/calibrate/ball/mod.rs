@@ -12,14 +12,12 @@ mod curve;
 mod passes;
 mod pose_noise;
 mod profile_sums;
-mod refused;
 mod side;
 mod sweep;
 mod variance_components;
 
 pub use variance_components::VarianceSpread;
 
-pub(crate) use assemble::{ONE_AXIS_RATIO, RECOMMENDED_SPAN_DEG};
 pub(crate) use curve::section_residual;
 
 /// Three unknowns a station must cover the nine of the problem, with one station to spare for judging.

@@ -1,11 +1,11 @@
 //! A station's sweep: the steps with a usable arc, and what both largest-arc methods share.
 
+use crate::calibrate::shared_warnings::{first_refusal, refused_captures};
 use crate::calibrate::{BallProblem, Mount, Reading, SolveError, Station, Warning};
 use crate::fit::ArcFit;
 use crate::geometry::{Mat3, Rigid, Vec3};
 
 use super::MIN_STATIONS;
-use super::refused::{first_refusal, refused_captures};
 
 /// Three unknowns (the ball's centre) need more than one section; three show that the curve bends.
 pub(super) const MIN_STEPS: usize = 3;

@@ -20,7 +20,7 @@ use std::path::PathBuf;
 use crate::geometry::{Rigid, Vec3};
 use crate::scene::PartKind;
 
-use super::error::DeviceError;
+use super::error::{DeviceError, system_words};
 use super::setup::{Endpoint, RobotKind, RobotSetup, SensorKind, SensorSetup};
 
 pub use fault::{Fault, FaultSpec, FaultStart, SimDevice};
@@ -130,7 +130,7 @@ impl SimCell {
             servers.serve(listener, plan.device, plan.clients, plan.service).map_err(|error| DeviceError::System {
                 device: DEVICE,
                 what: "starting a thread".to_owned(),
-                reason: error.to_string(),
+                reason: system_words(&error),
             })?;
         }
         let here = |port| Endpoint { host: "127.0.0.1".to_owned(), port };

@@ -20,6 +20,7 @@ pub mod shell;
 pub mod start;
 pub mod verify;
 pub mod warnings;
+pub mod workpiece;
 
 pub use check::*;
 pub use cli::*;

@@ -9,6 +9,12 @@ pub fn warning_message(warning: &Warning) -> String {
         Warning::FewStations { num_stations, recommended } => format!(
             "Only {num_stations} stations: the figures rest on very little, {recommended} or more make them trustworthy."
         ),
+        Warning::FewEdgePoints { num_p, num_q, recommended } => format!(
+            "Only {num_p} points on edge p and {num_q} on edge q: the figures rest on very little, {recommended} or more on each make them trustworthy."
+        ),
+        Warning::OtherMinimum { ratio, distance_mm } => format!(
+            "Another mounting, {distance_mm:.0} mm from this one, fits the points about as well: its residual is {ratio:.1} times as large."
+        ),
         Warning::LittleRotation { span_deg, recommended_deg } => format!(
             "The orientations differ by {span_deg:.1}° at most; below {recommended_deg:.0}° a small residual says little about the accuracy."
         ),
@@ -67,6 +73,8 @@ pub fn warning_message(warning: &Warning) -> String {
 pub const fn warning_remedy(warning: &Warning) -> &'static str {
     match warning {
         Warning::FewStations { .. } => "Add stations with other orientations.",
+        Warning::FewEdgePoints { .. } => "Add points on this edge, at other places and with other orientations.",
+        Warning::OtherMinimum { .. } => "Say roughly how the sensor is mounted, or add points with other orientations.",
         Warning::LittleRotation { .. } => "Add stations tilted by ±20° or more about two axes.",
         Warning::NearlyOneAxis { .. } => "Add stations tilted about an axis across it.",
         Warning::SideAmbiguous { .. } => {
@@ -76,7 +84,10 @@ pub const fn warning_remedy(warning: &Warning) -> &'static str {
             "Record a sweep across the ball at each station, or place the line so that the section is about 0.8 of the radius."
         }
         Warning::ArcLargerThanBall { .. } => "Check the ball's radius and the profile's scale.",
-        Warning::CaptureRefused { .. } => "Look at the profile in Arcs; capture it again with the ball in view.",
+        Warning::CaptureRefused { .. } => "Look at the profile in Arcs; capture it again with the target in view.",
+        Warning::StationSkipped { needed: ..=1, .. } => {
+            "Look at its profile in Arcs; capture it again with the target in view."
+        }
         Warning::StationSkipped { .. } => "Record a sweep across the ball at this station.",
         Warning::TravelOffNormal { .. } => {
             "Let the robot step along the calibrated laser normal; the whole-curve method allows for the angle."

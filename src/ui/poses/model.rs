@@ -17,6 +17,8 @@ pub fn labels_of(warning: &Warning) -> &[String] {
         | Warning::StationStandsOut { label, .. } => std::slice::from_ref(label),
         Warning::BlindInY { labels, .. } | Warning::SideAmbiguous { labels, .. } => labels,
         Warning::FewStations { .. }
+        | Warning::FewEdgePoints { .. }
+        | Warning::OtherMinimum { .. }
         | Warning::LittleRotation { .. }
         | Warning::NearlyOneAxis { .. }
         | Warning::RadiusDisagrees { .. }
