@@ -155,13 +155,11 @@ fn paint_profile(ui: &Ui, canvas: &Canvas, model: &ProfileModel) {
     if let Some(section) = model.section() {
         let circle = section.circle;
         let centre = canvas.at(circle.x_mm, circle.z_mm);
-        #[expect(clippy::cast_possible_truncation, reason = "screen coordinates")]
-        let on_screen = |length_mm: f64| length_mm as f32 * canvas.scale();
         if let Some(ball_radius_mm) = model.ball_radius_mm {
             let stroke = Stroke::new(1.0, palette.text_dim.gamma_multiply(0.7));
-            charts::dashed_circle(&canvas.painter, centre, on_screen(ball_radius_mm), stroke);
+            charts::dashed_circle(&canvas.painter, centre, on_screen(canvas, ball_radius_mm), stroke);
         }
-        canvas.painter.circle_stroke(centre, on_screen(circle.radius_mm), Stroke::new(1.5, fit_color()));
+        canvas.painter.circle_stroke(centre, on_screen(canvas, circle.radius_mm), Stroke::new(1.5, fit_color()));
     }
     for (class, color, is_solid) in [
         (PointClass::Unused, theme::UNUSED, true),
@@ -186,8 +184,35 @@ fn paint_profile(ui: &Ui, canvas: &Canvas, model: &ProfileModel) {
         let centre = canvas.at(circle.x_mm, circle.z_mm);
         cross(canvas, centre, Stroke::new(1.8, fit_color()));
         let label = text::centre(&with_std(circle.x_mm, section.std_mm[0]), &with_std(circle.z_mm, section.std_mm[1]));
-        canvas.note(ui, centre + vec2(0.0, 10.0), Align2::CENTER_TOP, &label, palette.text);
+        let radius = on_screen(canvas, circle.radius_mm.max(model.ball_radius_mm.unwrap_or(0.0)));
+        let (anchor, align) = beside_circle(ui, canvas, centre, radius, &label);
+        canvas.note(ui, anchor, align, &label, palette.text);
     }
+}
+
+/// Where a text stands clear of a small circle: at its right, else at its left; inside of one that has room for it, or that
+/// fills the plot.
+fn beside_circle(ui: &Ui, canvas: &Canvas, centre: egui::Pos2, radius: f32, label: &str) -> (egui::Pos2, Align2) {
+    let below = (centre + vec2(0.0, 10.0), Align2::CENTER_TOP);
+    let size = canvas.note_rect(ui, below.0, below.1, label).size();
+    let has_room_inside = vec2(0.5 * size.x, 10.0 + size.y).length() < 0.9 * radius;
+    let aside = vec2(radius + 8.0, 0.0);
+    if has_room_inside {
+        below
+    } else if (centre + aside).x + size.x < canvas.rect().right() - 4.0 {
+        (centre + aside, Align2::LEFT_CENTER)
+    } else if (centre - aside).x - size.x > canvas.rect().left() + 4.0 {
+        (centre - aside, Align2::RIGHT_CENTER)
+    } else {
+        below
+    }
+}
+
+/// A length of the profile on the screen, points.
+fn on_screen(canvas: &Canvas, length_mm: f64) -> f32 {
+    #[expect(clippy::cast_possible_truncation, reason = "screen coordinates")]
+    let length = length_mm as f32 * canvas.scale();
+    length
 }
 
 fn cross(canvas: &Canvas, at: egui::Pos2, stroke: Stroke) {
