@@ -49,7 +49,13 @@ impl Bench {
     }
 
     fn ui(ui: &mut egui::Ui, bench: &mut Self) {
-        let view = View { cell: &bench.cell, session: bench.session.as_ref(), has_solution: false };
+        let view = View {
+            cell: &bench.cell,
+            session: bench.session.as_ref(),
+            has_solution: false,
+            outlook: None,
+            has_other_mounting: false,
+        };
         let (memory, state) = (&mut bench.memory, &mut bench.state);
         capture::show_view(ui, view, memory, state, &mut bench.commands, &mut bench.actions);
     }
@@ -204,6 +210,8 @@ fn every_button_asks_for_exactly_its_command() {
         (paused, words::RESUME_NAME, CellCommand::ResumeRun),
         (replaying, words::END_REPLAY, CellCommand::EndReplay),
         (CellView { is_practice: true, ..armed() }, words::END_PRACTICE, CellCommand::EndPractice),
+        (CellView::default(), words::PRACTISE_SHORT, CellCommand::Practise),
+        (CellView { run: Some(RunView { num_done: 8, ..RUN }), ..armed() }, words::DISARM, CellCommand::Arm(false)),
     ] {
         assert_eq!(Bench::new(view).asked_by(name), cell(command), "{name}");
     }
@@ -215,7 +223,6 @@ fn every_button_asks_for_exactly_its_command() {
 fn the_next_thing_is_the_primary_button() {
     let start = CellCommand::StartRun { num_stations: 8 };
     for (view, label, command) in [
-        (CellView::default(), words::PRACTISE, CellCommand::Practise),
         (connected(Readiness::Ready), words::ARM, CellCommand::Arm(true)),
         (connected(Readiness::ReadOnly), words::CAPTURE, CellCommand::CaptureStation),
         (armed(), words::START_RUN, start),
@@ -294,7 +301,9 @@ fn a_broken_link_says_what_happened_and_when_it_is_tried_again() {
     let robot = LinkView { setup: Some(robot_setup(RobotKind::FanucMappdk)), state, latest: None };
     let harness = Bench::new(CellView { robot, ..connected(Readiness::Ready) }).harness();
     harness.get_by_label_contains(&words::again_in(Duration::from_secs(4)));
-    harness.get_by_label(&error.to_string());
+    let told = harness.query_all_by_label_contains(&error.to_string()).count();
+    assert_eq!(told, 1, "in one place");
+    harness.get_by_label(&words::next_button(words::RETRY));
     harness.get_by_label(words::RETRY_ROBOT);
     let delay = harness.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay;
     assert!(delay <= Duration::from_secs(1), "it counts down: {delay:?}");
@@ -366,6 +375,64 @@ fn an_address_is_entered_and_connected_to() {
     harness.get_by_label(words::CONNECT_ROBOT).click();
     harness.run_steps(2);
     assert_eq!(harness.state().commands.len(), 2, "the button does the same");
+}
+
+#[test]
+fn without_an_address_the_primary_button_asks_for_one() {
+    let mut harness = Bench::new(CellView::default()).harness();
+    harness.get_by_label(&words::next_button(words::CONNECT_ROBOT)).click();
+    harness.run_steps(3);
+    assert!(harness.get_by_label(words::ROBOT_HOST).is_focused());
+    harness.get_by_label(words::ROBOT_HOST).type_text("192.168.0.10");
+    harness.run_steps(2);
+    harness.get_by_label(&words::next_button(words::CONNECT_ROBOT)).click();
+    harness.run_steps(2);
+    let expected = cell(CellCommand::ConnectRobot(robot_setup(RobotKind::FanucMappdk)));
+    assert_eq!(harness.state().commands, expected);
+}
+
+#[test]
+fn a_replay_ends_by_escape() {
+    for is_over in [false, true] {
+        let replay = Some(ReplayView { station_idx: 0, capture_idx: 2, is_over });
+        let mut harness =
+            Bench { session: Some(sample()), ..Bench::new(CellView { replay, ..CellView::default() }) }.harness();
+        harness.get_by_label(&words::next_button(words::END_REPLAY));
+        harness.key_press(Key::Escape);
+        harness.run_steps(1);
+        assert_eq!(harness.state().commands, cell(CellCommand::EndReplay));
+    }
+}
+
+#[test]
+fn a_mounting_of_another_robot_is_marked_until_somebody_says_that_it_fits() {
+    let mut bench = Bench::new(armed());
+    bench.memory.mounting_of = Some(robot_setup(RobotKind::UniversalRobots));
+    let mut harness = bench.harness();
+    harness.get_by_label(&words::next_button(words::KEEP_MOUNTING)).click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().memory.mounting_of, Some(robot_setup(RobotKind::FanucMappdk)));
+    harness.get_by_label(&words::next_button(words::START_RUN));
+    assert_eq!(harness.state().commands, []);
+}
+
+#[test]
+fn a_number_out_of_range_is_not_taken_and_the_field_says_why() {
+    let mut harness = Bench::new(armed()).harness();
+    harness.get_by_label(setting_words::SEARCH).click();
+    harness.run_steps(4);
+    for (text, is_told) in [("0", true), ("much", true), ("0.5", false)] {
+        harness.get_by_role_and_label(egui::accesskit::Role::SpinButton, setting_words::STEP).focus();
+        harness.run_steps(2);
+        harness.event(egui::Event::Text(text.to_owned()));
+        harness.run_steps(2);
+        harness.key_press(Key::Enter);
+        harness.run_steps(3);
+        let start = format!("✖ {}: {text} is not taken, 0.75 mm stays", setting_words::STEP);
+        assert_eq!(harness.query_by_label_contains(&start).is_some(), is_told, "{text}");
+        assert_eq!(harness.state().commands.is_empty(), is_told, "{text}");
+    }
+    assert!(harness.query_by_label_contains("is not taken").is_none(), "the last one was");
 }
 
 #[test]

@@ -10,8 +10,8 @@ use handeye::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
 use handeye::geometry::{Base, Flange, PoseConvention, PoseNotation, Profile, Transform, Vec3, so3};
 use handeye::session::edit::CellValue;
 use handeye::session::{
-    Capture, Edge, Edit, History, Place, Published, Reading, Row, Session, SetupField, Station, Target, WrittenAngles,
-    new_gesture, parse, to_json,
+    Capture, Edge, Edit, FurtherTarget, History, Known, Place, Published, Reading, Row, Session, SetupField, Station,
+    Target, WrittenAngles, new_gesture, parse, to_json,
 };
 use proptest::prelude::*;
 use proptest::sample::select;
@@ -94,8 +94,30 @@ fn target() -> impl Strategy<Value = Target> {
             .prop_map(|(radius_mm, radius_std_mm)| Target::Ball { radius_mm, radius_std_mm }),
         Just(Target::RightAnglePlate),
         Just(Target::Point),
+        Just(Target::Workpiece),
         Just(Target::Rgbd { sequence: "folder".to_owned() }),
     ]
+}
+
+fn known() -> impl Strategy<Value = Known> {
+    let point = prop::option::of(prop::array::uniform3(number()).prop_map(Vec3::from));
+    let size = || prop_oneof![2 => Just(None), 1 => number().prop_map(Some)];
+    (point, size(), size(), size(), size()).prop_map(
+        |(point_in_base_mm, angle_deg, pitch_mm, height_mm, diameter_mm)| Known {
+            point_in_base_mm,
+            angle_deg,
+            pitch_mm,
+            height_mm,
+            diameter_mm,
+        },
+    )
+}
+
+fn further() -> impl Strategy<Value = FurtherTarget> {
+    let known = prop_oneof![Just(Known::default()), known()];
+    (label(), target(), known, prop::collection::vec(station(), 0..3)).prop_map(|(name, target, known, stations)| {
+        FurtherTarget { name, target, known, stations, unknown: serde_json::Map::new() }
+    })
 }
 
 fn place() -> impl Strategy<Value = Place> {
@@ -171,6 +193,14 @@ fn single_edit() -> impl Strategy<Value = Edit> {
         field().prop_map(Edit::Setup),
         notation().prop_map(Edit::SwitchNotation),
         notation().prop_map(Edit::Reinterpret),
+        known().prop_map(Edit::SetKnown),
+        prop::option::of(pose().prop_map(|pose| Transform::from_rigid(*pose.rigid()))).prop_map(Edit::SetRoughMounting),
+        further().prop_map(|further| Edit::AddFurther(Box::new(further))),
+        (0..3_usize).prop_map(Edit::RemoveFurther),
+        (0..3_usize, label()).prop_map(|(idx, name)| Edit::RenameFurther(idx, name)),
+        (0..3_usize, known()).prop_map(|(idx, known)| Edit::SetFurtherKnown(idx, known)),
+        (0..3_usize, prop::collection::vec(0..3_usize, 0..3), any::<bool>())
+            .prop_map(|(further_idx, station_idxs, used)| Edit::UseFurtherStations { further_idx, station_idxs, used }),
     ]
 }
 
@@ -412,6 +442,66 @@ fn stations_of_a_plate_that_do_not_say_their_edge_take_no_part() {
     assert_eq!(more.stations.len(), 3);
     assert!(more.stations.iter().all(|station| station.edge == Some(Edge::P) && !station.enabled));
     assert_eq!(parse(to_json(&more).as_bytes(), "plate").expect("can be saved"), more);
+}
+
+/// A tip of this name with so many stations, all of the same label.
+fn tip(name: &str, num_stations: usize) -> Edit {
+    let stations = session(&vec![1; num_stations]).stations;
+    let stations = stations.into_iter().map(|station| Station { label: "a".to_owned(), ..station }).collect();
+    Edit::AddFurther(Box::new(FurtherTarget {
+        name: name.to_owned(),
+        target: Target::Point,
+        known: Known::default(),
+        stations,
+        unknown: serde_json::Map::new(),
+    }))
+}
+
+#[test]
+fn further_targets_are_added_named_used_and_removed() {
+    let touched = Known { point_in_base_mm: Some(Vec3::new(1.0, 2.0, 3.0)), ..Known::default() };
+    let use_second = |used| Edit::UseFurtherStations { further_idx: 1, station_idxs: vec![1], used };
+    let edits = [tip("tip", 1), tip("tip", 2), Edit::RenameFurther(0, "old tip".to_owned()), use_second(false)];
+    let edits = [&edits[..], &[Edit::SetFurtherKnown(1, touched)]].concat();
+    let with_two = Edit::Several(edits).apply(&session(&[1])).expect("all fit");
+    let names: Vec<&str> = with_two.further.iter().map(|further| further.name.as_str()).collect();
+    assert_eq!(names, ["old tip", "tip (2)"]);
+    let labels: Vec<&str> = with_two.further[1].stations.iter().map(|station| station.label.as_str()).collect();
+    assert_eq!(labels, ["a", "a (2)"]);
+    assert!(with_two.further[1].stations[0].enabled && !with_two.further[1].stations[1].enabled);
+    assert_eq!(with_two.further[1].known, touched);
+    let with_one = Edit::RemoveFurther(0).apply(&with_two).expect("there");
+    assert_eq!(with_one.further, with_two.further[1..]);
+    for (edit, expected) in [
+        (Edit::RemoveFurther(2), "found no further target 3; it may have been removed"),
+        (
+            Edit::UseFurtherStations { further_idx: 0, station_idxs: vec![4], used: true },
+            "found no station 5 of the further target old tip; it may have been removed",
+        ),
+        (
+            Edit::RenameFurther(0, "tip (2)".to_owned()),
+            "found the name \"tip (2)\" twice; each further target needs one of its own",
+        ),
+        (
+            Edit::SetKnown(touched),
+            "found touched_in_base_mm, which a target of this kind does not have; needed nothing",
+        ),
+        (
+            Edit::SetFurtherKnown(0, Known { pitch_mm: Some(15.0), ..Known::default() }),
+            "found pitch_mm, which a target of this kind does not have; needed touched_in_base_mm or nothing",
+        ),
+    ] {
+        assert_eq!(edit.apply(&with_two).expect_err("refused").to_string(), expected);
+    }
+}
+
+#[test]
+fn what_is_known_of_a_target_goes_with_its_kind() {
+    let known = Known { pitch_mm: Some(15.0), ..Known::default() };
+    let to = |target| Edit::Setup(SetupField::Target(target));
+    let piece = Edit::Several(vec![to(Target::Workpiece), Edit::SetKnown(known)]).apply(&session(&[])).expect("fits");
+    assert_eq!(piece.known, known);
+    assert_eq!(to(Target::Point).apply(&piece).expect("fits").known, Known::default());
 }
 
 /// A bench of one number, to look at the history alone.

@@ -9,11 +9,13 @@ use std::time::{Duration, Instant};
 use handeye::app::cell::{Activity, CellCommand, CellSettings, RoughMounting, StationRoutine};
 use handeye::app::compare::distance_from_truth;
 use handeye::app::{Command, NoticeKind, RecoverySettings, Workbench};
+use handeye::calibrate::verdict::GOOD_UP_TO_MM;
 use handeye::calibrate::{Method, Solution};
 use handeye::device::sim::{Fault, FaultSpec, Head, SimCell, SimOptions};
 use handeye::device::{LinkState, MotionRefusal, RobotKind, RoutineEnd, SearchPhase, SensorKind, WorkspaceBox};
 use handeye::geometry::Vec3;
 use handeye::session::{Edit, Row, Session, SetupField, Target};
+use handeye::ui::capture::model::Outlook;
 
 /// Long past anything that is waited for here, on a slow machine as well.
 const PATIENCE: Duration = Duration::from_mins(2);
@@ -24,6 +26,9 @@ const SLOW: f64 = 2.0;
 /// How far the result may be from the truth, in its stated σ. If all the uncertainty lies along one direction, a fair result
 /// is further off once in 16 000 runs.
 const FAIR_STDS: f64 = 4.0;
+
+/// A search that finds its peak has at least three sections on either side of it.
+const FEWEST_IN_SEARCH: usize = 6;
 
 struct Bench {
     workbench: Workbench,
@@ -174,6 +179,12 @@ fn a_run_over_eight_stations_gives_a_result_within_its_stated_sigma() {
     let done = bench.workbench.notices().iter().filter(|notice| notice.kind == NoticeKind::Done).count();
     assert_eq!(done, 1, "{:?}", bench.workbench.notices());
 
+    // What the last search saw is in the session, profile by profile; the stations before are its like.
+    let num_seen = bench.workbench.cell().search.as_ref().expect("searched").points.len();
+    let num_kept: Vec<_> = bench.session().stations.iter().map(|station| station.captures.len()).collect();
+    assert_eq!(num_kept.last(), Some(&num_seen), "{num_kept:?}");
+    assert!(num_kept.iter().all(|num| *num >= FEWEST_IN_SEARCH), "{num_kept:?}");
+
     let truth = bench.session().truth.clone().expect("a simulated cell knows it");
     let solution = bench.solution();
     let stated_mm = solution.uncertainty.as_ref().expect("known").workspace_point_std_mm;
@@ -200,6 +211,25 @@ fn a_run_over_eight_stations_gives_a_result_within_its_stated_sigma() {
     after.workbench.apply(Command::Recover(0));
     after.wait("the recovered session", |workbench| workbench.document().is_some());
     assert_eq!(after.session().num_captures(), num_captures);
+}
+
+#[test]
+fn a_run_as_long_as_the_outlook_says_ends_good() {
+    let mut bench = Bench::practising(1, FAST).armed();
+    bench.cell(CellCommand::StartRun { num_stations: 8 });
+    bench.wait_for_rest();
+    let outlook = |workbench: &Workbench| workbench.current_plan().and_then(Outlook::new);
+    let told = outlook(&bench.workbench).expect("eight stations of this cell are not good yet");
+    let num_stations = u16::try_from(told.num_to_good.expect("within reach")).expect("not so many");
+    bench.cell(CellCommand::StartRun { num_stations });
+    // It begins with a proposal, as the robot stands at a station.
+    bench.wait("the way to a further station", |workbench| workbench.cell().activity == Activity::Moving);
+    bench.wait_for_rest();
+    let std_mm = bench.solution().uncertainty.as_ref().expect("known").workspace_point_std_mm;
+    println!("{:.3} mm, and {std_mm:.3} mm after {num_stations} more", told.std_mm);
+    // What is planned is not quite what is measured.
+    assert!(std_mm < 1.1 * GOOD_UP_TO_MM, "{std_mm} mm after {num_stations} more");
+    assert!(num_stations > 2 && std_mm > 0.8 * GOOD_UP_TO_MM, "{std_mm} mm: it asks for too many, {num_stations}");
 }
 
 #[test]

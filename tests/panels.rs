@@ -15,7 +15,7 @@ use handeye::diagnose::{
 };
 use handeye::geometry::{Profile, Transform, Vec3};
 use handeye::plan::{Plan, PlanRefusal, PlannedStation};
-use handeye::session::{self, Reading, Session, samples};
+use handeye::session::{self, Reading, Session, Target, samples};
 use handeye::text::{
     arcs as arcs_words, compare as compare_words, diagnosis as fault_words, diagnosis_panel as panel_words,
     method_name, method_short_name,
@@ -132,6 +132,14 @@ fn sample(file_name: &str) -> Session {
     session::parse(sample.json.as_bytes(), sample.file_name).expect("the sample is a session")
 }
 
+/// The samples that these panels are about, by their names.
+fn ball_samples() -> impl Iterator<Item = (&'static str, Session)> {
+    samples::ALL
+        .iter()
+        .map(|sample| (sample.file_name, self::sample(sample.file_name)))
+        .filter(|(_, session)| matches!(session.target, Target::Ball { .. }))
+}
+
 fn selected(harness: &Harness<'static, Bench>) -> (usize, usize) {
     let selection = &harness.state().selection;
     (selection.station_idx, selection.capture_idx)
@@ -189,8 +197,7 @@ fn the_toggles_choose_the_cards() {
 
 #[test]
 fn every_view_of_the_comparison_draws_every_sample() {
-    for sample in samples::ALL {
-        let session = session::parse(sample.json.as_bytes(), sample.file_name).expect("the sample is a session");
+    for (file_name, session) in ball_samples() {
         for width in [560.0, 1000.0, 1600.0] {
             let mut harness = Bench::with(Shown::Compare, session.clone()).harness_of_size([width, 800.0]);
             for toggle in [
@@ -205,7 +212,7 @@ fn every_view_of_the_comparison_draws_every_sample() {
                 }
                 harness.run_steps(2);
             }
-            assert!(harness.state().commands.is_empty(), "{}", sample.file_name);
+            assert!(harness.state().commands.is_empty(), "{file_name}");
         }
     }
 }
@@ -267,14 +274,13 @@ fn a_refused_profile_says_why_in_the_errors_own_words() {
 
 #[test]
 fn every_sample_has_its_arcs_or_says_what_to_do() {
-    for sample in samples::ALL {
-        let session = session::parse(sample.json.as_bytes(), sample.file_name).expect("the sample is a session");
+    for (file_name, session) in ball_samples() {
         let is_reduced = matches!(session.stations[0].captures[0].reading, Reading::Point(_));
         let has_sweep = session.stations[0].captures.len() > 1;
         for width in [560.0, 1000.0] {
             let harness = Bench::with(Shown::Arcs, session.clone()).harness_of_size([width, 1200.0]);
-            assert_eq!(harness.query_by_label(arcs_words::POINT_READING).is_some(), is_reduced, "{}", sample.file_name);
-            assert_eq!(harness.query_by_label(arcs_words::NO_SWEEP).is_some(), !has_sweep, "{}", sample.file_name);
+            assert_eq!(harness.query_by_label(arcs_words::POINT_READING).is_some(), is_reduced, "{file_name}");
+            assert_eq!(harness.query_by_label(arcs_words::NO_SWEEP).is_some(), !has_sweep, "{file_name}");
         }
     }
 }
@@ -597,13 +603,12 @@ fn the_limits_of_the_plan_are_edited_in_place() {
 
 #[test]
 fn every_sample_can_be_diagnosed_at_every_width() {
-    for sample in samples::ALL {
-        let session = session::parse(sample.json.as_bytes(), sample.file_name).expect("the sample is a session");
+    for (file_name, session) in ball_samples() {
         for width in [532.0, 948.0, 1600.0] {
             let harness = Bench::with(Shown::Diagnosis, session.clone()).harness_of_size([width, 792.0]);
             harness.get_by_label(panel_words::FINDINGS);
             harness.get_by_label(panel_words::NEXT_POSES);
-            assert!(harness.state().commands.is_empty(), "{}", sample.file_name);
+            assert!(harness.state().commands.is_empty(), "{file_name}");
         }
     }
 }

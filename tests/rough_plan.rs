@@ -176,19 +176,37 @@ fn widest_turn_deg(stations: &[MeasuredStation]) -> f64 {
     rotations.iter().flat_map(|a| rotations.iter().map(|b| a.angle_to(b).to_degrees())).fold(0.0, f64::max)
 }
 
+/// How far the stations with a number are turned, degrees: from the first one, and by tilt and spin within the limits.
+fn tell_turns(turns_deg: &[Vec<[f64; 3]>]) {
+    let median = |station: &[[f64; 3]], column: usize| {
+        let mut values: Vec<f64> = station.iter().map(|turns_deg| turns_deg[column]).collect();
+        values.sort_by(f64::total_cmp);
+        values[values.len() / 2]
+    };
+    println!("| station | turned from the first / ° | tilt / ° | spin / ° |\n| --- | --- | --- | --- |");
+    for (idx, station) in turns_deg.iter().enumerate() {
+        let [turned, tilt, spin] = [0, 1, 2].map(|column| median(station, column));
+        println!("| {} | {turned:.0} | {tilt:.0} | {spin:.0} |", idx + 2);
+    }
+}
+
 #[test]
 fn eight_stations_keep_the_ball_in_view_and_spread_over_the_limits() {
     let limits = Limits { max_spin_deg: 60.0, ..Limits::default() };
     for (mount, num_cells) in [(Mount::OnFlange, 200), (Mount::Fixed, 20)] {
         let (mut num_lost, mut num_planned) = (0, 0);
+        let mut turns_deg = vec![Vec::new(); NUM_STATIONS - 1];
+        let (mut worst, mut least_turn_deg) = ([0.0_f64; 2], f64::INFINITY);
         for seed in 0..num_cells {
             let mut cell = Cell::new(seed, mount);
             let first = cell.first_pose();
             let mut stations = vec![cell.measure(&first).expect("the operator sees it")];
             let mut avoided = Vec::new();
-            for _ in 1..NUM_STATIONS {
+            for turns_deg in &mut turns_deg {
                 let (planned, _) = next_rough(&cell.rough, &stations, &avoided, &VIEW, &limits).expect("a station");
                 num_planned += 1;
+                let turned = planned.base_from_flange.rotation().angle_to(&first.rotation);
+                turns_deg.push([turned.to_degrees(), planned.tilt_deg.abs(), planned.spin_deg.abs()]);
                 if let Some(station) = cell.measure(planned.base_from_flange.rigid()) {
                     stations.push(station);
                 } else {
@@ -202,7 +220,12 @@ fn eight_stations_keep_the_ball_in_view_and_spread_over_the_limits() {
             // Eight stations of 0.02 mm (weighed as 0.05 mm): what the guess was does not matter any more.
             let [off_mm, off_deg] = cell.error(&refined(&cell.rough, &stations));
             assert!(off_mm < 0.5 && off_deg < 0.5, "{mount:?} {seed}: {off_mm} mm, {off_deg}°");
+            worst = [worst[0].max(off_mm), worst[1].max(off_deg)];
+            least_turn_deg = least_turn_deg.min(turn_deg);
         }
+        let [worst_mm, worst_deg] = worst;
+        println!("{mount:?}: off by {worst_mm:.3} mm and {worst_deg:.3}° at most; {least_turn_deg:.0}° apart at least");
+        tell_turns(&turns_deg);
         println!("{mount:?}: the ball was out of view at {num_lost} of {num_planned} planned stations");
         // Two σ along three axes would be one in ten if all were on the edge.
         assert!(100 * num_lost < num_planned, "{mount:?}: {num_lost} of {num_planned}");

@@ -7,10 +7,13 @@ use handeye::calibrate::{Mount, Side, SideChoice};
 use handeye::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
 use handeye::geometry::{PoseConvention, PoseNotation, Transform, Vec3, so3};
 use handeye::session::format::{load_with_notes, parse_with_notes};
-use handeye::session::{Edge, Reading, Session, SessionError, Target, check, load, parse, save, to_json};
+use handeye::session::{Edge, Known, Reading, Session, SessionError, Target, check, load, parse, save, to_json};
 
 /// A small session with every kind of field; the broken files below are made from it by one replacement each.
 const VALID: &str = include_str!("data/every_field.json");
+
+/// A session of a point with everything that further targets and other kinds have.
+const TARGETS: &str = include_str!("data/every_target.json");
 
 fn valid() -> Session {
     parse(VALID.as_bytes(), "valid.json").expect("the base of the tests is valid")
@@ -28,6 +31,28 @@ fn check_refused(json: &str, fragments: &[&str]) {
         assert!(refusal.contains(fragment), "{fragment:?} is not in: {refusal}");
     }
 }
+
+#[rustfmt::skip]
+/// Refusals of [`TARGETS`] with one piece replaced.
+const BROKEN_TARGETS: &[(&str, &str, &[&str])] = &[
+    ("[400, -20.5, 61.25]", "[400, -20.5]", &["target.touched_in_base_mm: found a list of 2, expected a list of 3 numbers"]),
+    ("[400, -20.5, 61.25]", "[400, -20.5, 1e9]", &["target.touched_in_base_mm[2]: found 1000000000, expected a position in mm"]),
+    ("\"rough_flange_from_sensor\": {", "\"rough_flange_from_sensor\": 4, \"x\": {", &["sensor.rough_flange_from_sensor: found 4, expected an object with translation_mm"]),
+    ("\"euler_deg\": [0, 90, 0]", "\"euler_deg\": [0, 90]", &["sensor.rough_flange_from_sensor.euler_deg: found a list of 2"]),
+    (", \"convention\": \"kuka-abc\"", "", &["sensor.rough_flange_from_sensor.convention: found nothing"]),
+    ("\"point_in_base_mm\"", "\"ball_in_base_mm\"", &["truth.point_in_base_mm: found nothing, expected the true point"]),
+    ("\"further\": [", "\"further\": 3, \"x\": [", &["further: found 3, expected a list of further targets"]),
+    ("\"name\": \"plate\", \"target\"", "\"target\"", &["further[0].name: found nothing, expected text on one line"]),
+    ("\"name\": \"plate\"", "\"name\": \"a\\nb\"", &["further[0].name: found", "expected text on one line"]),
+    ("\"name\": \"block\"", "\"name\": \"plate\"", &["further[1].name: found \"plate\", which further[0] has too, expected a name of its own for each further target"]),
+    ("\"kind\": \"right-angle-plate\"", "\"kind\": \"rgbd\"", &["further[0].target.kind: found \"rgbd\", expected \"ball\", \"right-angle-plate\", \"point\" or \"workpiece\""]),
+    ("\"kind\": \"right-angle-plate\"", "\"kind\": \"ball\"", &["further[0].target.radius_mm: found nothing"]),
+    ("\"edge\": \"p\", ", "", &["further[0].stations[0].edge: found nothing, expected \"p\" or \"q\""]),
+    ("\"label\": \"q1\"", "\"label\": \"p1\"", &["further[0].stations[1].label: found \"p1\", which further[0].stations[0] has too"]),
+    ("\"point_mm\": [1, 0, 80]", "\"point_mm\": [1, 0]", &["further[0].stations[0].captures[0].point_mm: found a list of 2"]),
+    ("\"pitch_mm\": 15", "\"pitch_mm\": -15", &["further[1].target.pitch_mm: found -15, expected a part's size in mm"]),
+    ("\"angle_deg\": 90", "\"angle_deg\": 190", &["further[1].target.angle_deg: found 190, expected an angle between two planes in degrees from 0 to 180"]),
+];
 
 #[rustfmt::skip]
 /// Refusals of [`VALID`] with one piece replaced: the piece, what stands there instead, what the message holds.
@@ -66,7 +91,7 @@ const BROKEN: &[(&str, &str, &[&str])] = &[
     ("\"radius_mm\": 15.0", "\"radius_mm\": NaN", &["line 11, column", "found `NaN"]),
     ("\"radius_mm\": 15.0", "\"radius_mm\": Infinity", &["line 11, column", "found `Infinity"]),
     ("\"radius_mm\": 15.0", "\"radius_mm\": null", &["target.radius_mm: found nothing, expected a ball's radius"]),
-    ("\"kind\": \"ball\"", "\"kind\": \"cube\"", &["target.kind: found \"cube\"", "\"ball\", \"right-angle-plate\", \"point\" or \"rgbd\""]),
+    ("\"kind\": \"ball\"", "\"kind\": \"cube\"", &["target.kind: found \"cube\"", "\"ball\", \"right-angle-plate\", \"point\", \"workpiece\" or \"rgbd\""]),
     ("\"kind\": \"ball\", ", "", &["target.kind: found nothing"]),
     ("{ \"kind\": \"ball\", \"radius_mm\": 15.0 }", "\"ball\"", &["target: found \"ball\", expected an object like"]),
     ("\"target\": { \"kind\": \"ball\", \"radius_mm\": 15.0 },", "", &["target: found nothing"]),
@@ -129,6 +154,55 @@ fn broken_files_are_refused_with_place_found_and_expected() {
     for (piece, instead, fragments) in BROKEN {
         assert_eq!(VALID.matches(piece).count(), 1, "{piece:?} must occur once");
         check_refused(&VALID.replacen(piece, instead, 1), fragments);
+    }
+}
+
+#[test]
+fn broken_targets_are_refused_with_place_found_and_expected() {
+    for (piece, instead, fragments) in BROKEN_TARGETS {
+        assert_eq!(TARGETS.matches(piece).count(), 1, "{piece:?} must occur once");
+        check_refused(&TARGETS.replacen(piece, instead, 1), fragments);
+    }
+}
+
+#[test]
+fn what_is_known_of_targets_is_read_as_written_and_saved_as_read() {
+    let session = parse(TARGETS.as_bytes(), "targets.json").expect("valid");
+    assert_eq!(session.known, Known { point_in_base_mm: Some(Vec3::new(400.0, -20.5, 61.25)), ..Known::default() });
+    let rough = session.sensor.rough_flange_from_sensor.expect("it is given");
+    assert!(rough.rotation().angle_to(&so3::exp(Vec3::y() * std::f64::consts::FRAC_PI_2)) < 1e-12);
+    assert_eq!(session.truth.as_ref().expect("given").target_in_base_mm, Vec3::new(401.0, -20.0, 61.0));
+    let [plate, block] = session.further.as_slice() else { panic!("{:?}", session.further) };
+    assert_eq!((plate.name.as_str(), &plate.target), ("plate", &Target::RightAnglePlate));
+    assert_eq!([plate.stations[0].edge, plate.stations[1].edge], [Some(Edge::P), Some(Edge::Q)]);
+    assert!(!plate.stations[1].enabled);
+    let sizes = Known {
+        angle_deg: Some(90.0),
+        pitch_mm: Some(15.0),
+        height_mm: Some(10.0),
+        diameter_mm: Some(40.0),
+        point_in_base_mm: None,
+    };
+    assert_eq!((&block.target, block.known), (&Target::Workpiece, sizes));
+    let saved = to_json(&session);
+    assert_eq!(parse(saved.as_bytes(), "again.json"), Ok(session));
+    for line in [
+        "  \"target\": { \"kind\": \"point\", \"touched_in_base_mm\": [400, -20.5, 61.25], \"their 2\": 2 },",
+        "      \"name\": \"block\",",
+        "      \"target\": { \"kind\": \"workpiece\", \"angle_deg\": 90, \"pitch_mm\": 15, \"height_mm\": 10, \"diameter_mm\": 40 },",
+    ] {
+        assert!(saved.lines().any(|found| found == line), "{line:?} is no line of\n{saved}");
+    }
+    for piece in ["their 1", "their 2", "their 3", "their 4"] {
+        assert_eq!(saved.matches(piece).count(), 1, "{piece} survives in {saved}");
+    }
+}
+
+#[test]
+fn what_is_not_set_is_not_written() {
+    let saved = to_json(&valid());
+    for field in ["further", "touched_in_base_mm", "rough_flange_from_sensor", "angle_deg"] {
+        assert!(!saved.contains(field), "{field} in {saved}");
     }
 }
 
@@ -206,6 +280,10 @@ fn a_session_without_stations_and_optional_fields_is_fine() {
 #[test]
 fn plate_and_sequence_sessions_are_read_and_kept() {
     let plate = VALID
+        .replace(
+            "\"ball_in_base_mm\": [0, 0, 0]",
+            "\"base_from_plate\": { \"translation_mm\": [1, 2, 3], \"quaternion_wxyz\": [0.8, 0, 0, 0.6] }",
+        )
         .replace("\"kind\": \"ball\", \"radius_mm\": 15.0", "\"kind\": \"right-angle-plate\"")
         .replace("\"side\": \"+\"", "\"edge\": \"q\"")
         .replace(
@@ -214,12 +292,16 @@ fn plate_and_sequence_sessions_are_read_and_kept() {
         );
     let session = parse(plate.as_bytes(), "plate.json").expect("valid");
     assert_eq!(session.stations[0].edge, Some(Edge::Q));
-    assert_eq!(session.truth, None, "the truth of other targets is not ours to read");
-    assert!(to_json(&session).contains("\"truth\""), "but it is kept");
-    let sequence =
-        r#"{"format": "handeye-session", "version": 1, "target": {"kind": "rgbd"}, "sequence": "desk/run 1"}"#;
+    let truth = session.truth.as_ref().expect("there is one");
+    assert_eq!(truth.target_in_base_mm, Vec3::new(1.0, 2.0, 3.0), "the plate's corner");
+    assert_eq!(truth.base_from_plate.expect("read").translation.vector, truth.target_in_base_mm);
+    assert_eq!(parse(to_json(&session).as_bytes(), "again.json"), Ok(session));
+    let sequence = r#"{"format": "handeye-session", "version": 1, "target": {"kind": "rgbd"},
+        "sequence": "desk/run 1", "truth": {"their": 1}}"#;
     let session = parse(sequence.as_bytes(), "rgbd.json").expect("valid");
     assert_eq!(session.target, Target::Rgbd { sequence: "desk/run 1".to_owned() });
+    assert_eq!(session.truth, None, "the truth of a sequence is not ours to read");
+    assert!(to_json(&session).contains("\"truth\""), "but it is kept");
     assert_eq!(parse(to_json(&session).as_bytes(), "again.json"), Ok(session));
 }
 
@@ -233,6 +315,11 @@ fn a_fixed_sensors_truth_has_the_names_of_its_frames_and_either_is_read() {
     assert_eq!(parse(on_flange_names.as_bytes(), "fixed.json").as_ref(), Ok(&session));
     let saved = to_json(&session);
     assert!(saved.contains("\"base_from_sensor\"") && saved.contains("\"ball_in_flange_mm\""), "{saved}");
+    let of_point =
+        TARGETS.replace("\"stations\": [],\n  \"further\"", "\"mount\": \"fixed\", \"stations\": [], \"further\"");
+    let session = parse(of_point.as_bytes(), "fixed.json").expect("valid");
+    assert!(to_json(&session).contains("\"point_in_flange_mm\": [401, -20, 61]"));
+    assert_eq!(parse(to_json(&session).as_bytes(), "again.json"), Ok(session));
 }
 
 #[test]

@@ -7,12 +7,13 @@ use handeye::calibrate::{Mount, Side, SideChoice};
 use handeye::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
 use handeye::geometry::{Base, Flange, PoseConvention, PoseNotation, Profile, Transform, Vec3, so3};
 use handeye::session::{
-    Capture, Known, Published, Reading, Robot, Sensor, Session, Station, Target, Truth, WrittenAngles, parse, to_json,
+    Capture, Edge, FurtherTarget, Known, Published, Reading, Robot, Sensor, Session, Station, Target, Truth,
+    WrittenAngles, parse, to_json,
 };
 use proptest::prelude::*;
 
-/// A small session with every kind of field.
-const VALID: &str = include_str!("data/every_field.json");
+/// Small sessions with every kind of field.
+const VALID: [&str; 2] = [include_str!("data/every_field.json"), include_str!("data/every_target.json")];
 
 fn pose() -> impl Strategy<Value = Transform<Base, Flange>> {
     (prop::array::uniform3(-1e6..1e6), prop::array::uniform3(-3.0..3.0)).prop_map(|(translation, rotation_vector)| {
@@ -78,21 +79,63 @@ fn station() -> impl Strategy<Value = Station> {
     })
 }
 
+fn size() -> impl Strategy<Value = Option<f64>> {
+    prop::option::of(1e-3..1e4)
+}
+
+/// A target with stations, what is known of it, and whether its stations saw edges.
+fn target() -> impl Strategy<Value = (Target, Known)> {
+    let position = prop::array::uniform3(-1e6..1e6).prop_map(Vec3::from);
+    let sizes = (prop::option::of(0.0..180.0), size(), size(), size());
+    prop_oneof![
+        (1e-3..1e4, prop::option::of(1e-6..100.0))
+            .prop_map(|(radius_mm, radius_std_mm)| (Target::Ball { radius_mm, radius_std_mm }, Known::default())),
+        Just((Target::RightAnglePlate, Known::default())),
+        prop::option::of(position)
+            .prop_map(|point_in_base_mm| (Target::Point, Known { point_in_base_mm, ..Known::default() })),
+        sizes.prop_map(|(angle_deg, pitch_mm, height_mm, diameter_mm)| {
+            let sizes = Known { angle_deg, pitch_mm, height_mm, diameter_mm, point_in_base_mm: None };
+            (Target::Workpiece, sizes)
+        }),
+    ]
+}
+
+fn labelled(mut stations: Vec<Station>, target: &Target) -> Vec<Station> {
+    for (idx, station) in stations.iter_mut().enumerate() {
+        station.label = format!("{idx}°");
+        station.edge = (*target == Target::RightAnglePlate).then_some(if idx % 2 == 0 { Edge::P } else { Edge::Q });
+    }
+    stations
+}
+
+fn further() -> impl Strategy<Value = FurtherTarget> {
+    (target(), prop::collection::vec(station(), 0..3)).prop_map(|((target, known), stations)| FurtherTarget {
+        name: String::new(),
+        stations: labelled(stations, &target),
+        target,
+        known,
+        unknown: serde_json::Map::from_iter([("their".to_owned(), serde_json::json!([1]))]),
+    })
+}
+
 prop_compose! {
     fn session()(
         name in any::<String>(),
         notes in any::<String>(),
         position_std_mm in prop::option::of(1e-3..1.0),
         notation in notation(),
-        radius_mm in 1e-3..1e4,
+        (target, known) in target(),
+        rough in prop::option::of(pose()),
+        mut further in prop::collection::vec(further(), 0..3),
         is_fixed in any::<bool>(),
-        mut stations in prop::collection::vec(station(), 0..4),
+        stations in prop::collection::vec(station(), 0..4),
         true_pose in prop::option::of(pose()),
         is_published in any::<bool>(),
         key in "[a-z]{3} \\PC{0,5}",
     ) -> Session {
-        for (idx, station) in stations.iter_mut().enumerate() {
-            station.label = format!("{idx}°");
+        let stations = labelled(stations, &target);
+        for (idx, further) in further.iter_mut().enumerate() {
+            further.name = format!("target {idx}");
         }
         let published = is_published.then(|| Published {
             target_in_base_mm: stations.iter().map(|_| Vec3::new(0.1, -0.2, 1e-17)).collect(),
@@ -104,19 +147,26 @@ prop_compose! {
             name,
             notes,
             robot: Robot { position_std_mm, notation, ..Robot::default() },
-            sensor: Sensor::default(),
-            target: Target::Ball { radius_mm, radius_std_mm: position_std_mm },
-            known: Known::default(),
-            further: Vec::new(),
+            sensor: Sensor {
+                rough_flange_from_sensor: rough.map(|pose| Transform::from_rigid(*pose.rigid())),
+                ..Sensor::default()
+            },
             mount: if is_fixed { Mount::Fixed } else { Mount::OnFlange },
             stations,
             published,
             truth: true_pose.map(|pose| Truth {
                 flange_from_sensor: Transform::from_rigid(*pose.rigid()),
-                target_in_base_mm: Vec3::new(1.0, 2.0, 0.3),
-                base_from_plate: None,
+                target_in_base_mm: match target {
+                    Target::RightAnglePlate => pose.translation_mm(),
+                    Target::Workpiece => Vec3::zeros(),
+                    _ => Vec3::new(1.0, 2.0, 0.3),
+                },
+                base_from_plate: (target == Target::RightAnglePlate).then(|| *pose.rigid()),
                 unknown: serde_json::Map::new(),
             }),
+            target,
+            known,
+            further,
             unknown,
         }
     }
@@ -138,9 +188,10 @@ proptest! {
 
     #[test]
     fn no_change_of_a_few_bytes_makes_it_panic_or_break_the_line(
+        valid in prop::sample::select(&VALID[..]),
         changes in prop::collection::vec((any::<prop::sample::Index>(), damage(), 0..3_u8), 1..4),
     ) {
-        let mut bytes = VALID.as_bytes().to_vec();
+        let mut bytes = valid.as_bytes().to_vec();
         for (index, byte, kind) in changes {
             let at = index.index(bytes.len());
             match kind {
@@ -157,10 +208,11 @@ proptest! {
 
     #[test]
     fn no_swap_of_one_word_for_another_makes_it_panic(
+        valid in prop::sample::select(&VALID[..]),
         at in any::<prop::sample::Index>(),
         instead in prop::sample::select(vec!["null", "1e308", "-0.0", "{}", "[]", "\"\"", "[[[]]]", "1e-320", "99999999999999999999", "\"\\ud800\""]),
     ) {
-        let words: Vec<&str> = VALID.split_inclusive([' ', ',', '[', ']', '{', '}']).collect();
+        let words: Vec<&str> = valid.split_inclusive([' ', ',', '[', ']', '{', '}']).collect();
         let at = at.index(words.len());
         let swapped: String = words.iter().enumerate().map(|(idx, word)| if idx == at { instead } else { word }).collect();
         if let Ok(session) = parse(swapped.as_bytes(), "swapped.json") {

@@ -7,8 +7,10 @@ use crate::diagnose::Remedy;
 use crate::plan::Limits;
 use crate::session::import::ImportOptions;
 use crate::session::{Edit, Target};
+use crate::verify::Calibration;
 
 use super::cell::CellCommand;
+use super::workbench::scans::ScanCommand;
 
 impl Command {
     /// Reads what a user has pointed at: a session is opened, anything else goes to the import's preview.
@@ -137,6 +139,14 @@ pub enum Command {
     CancelBootstrap,
     /// Plans the next stations within other limits.
     SetPlanLimits(Limits),
+    /// Reads another session file in the background; its target becomes a further one of the open session.
+    AddFurther(PathBuf),
+    /// Judges a calibration from elsewhere along with the session's own.
+    GiveCalibration(Box<Calibration>),
+    /// Forgets it, by its name.
+    WithdrawCalibration(String),
+    /// Something for scanned parts.
+    Scan(Box<ScanCommand>),
     /// Something for the live cell.
     Cell(Box<CellCommand>),
     /// Removes a notice.

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use crate::calibrate::Warning;
 use crate::session::check::{Finding, findings};
 use crate::session::format::{Loaded, load_with_notes};
-use crate::session::{self, Session, measure};
+use crate::session::{self, FurtherTarget, NothingToSolve, Session, measure};
 use crate::text::check::finding_message;
 use crate::text::warning_message;
 use crate::watch::Unwatched;
@@ -45,8 +45,11 @@ pub fn listing(loaded: &Loaded) -> String {
         session.stations.iter().filter(|station| station.enabled).count(),
         session.num_captures(),
     );
-    for finding in &all {
+    for FurtherTarget { name, stations, .. } in &session.further {
         // Writing to a string cannot fail.
+        let _ = writeln!(listing, "with the further target {name}, {} stations", stations.len());
+    }
+    for finding in &all {
         let _ = writeln!(listing, "{}: {}", finding.code(), finding_message(finding));
     }
     let (warnings, failure) = outcome_of_all_methods(session);
@@ -54,8 +57,7 @@ pub fn listing(loaded: &Loaded) -> String {
         let _ = writeln!(listing, "{}: {}", warning.code(), warning_message(warning));
     }
     // That stations are missing is said already.
-    let stations_missing =
-        all.iter().any(|finding| matches!(finding, Finding::NoStations | Finding::FewStations { .. }));
+    let stations_missing = all.iter().any(Finding::lacks_stations);
     if let Some(error) = failure.as_ref().filter(|_| !stations_missing) {
         let _ = writeln!(listing, "not-solvable: {error}");
     }
@@ -71,6 +73,8 @@ fn outcome_of_all_methods(session: &Session) -> (Vec<Warning>, Option<String>) {
     let Ok(measured) = measure(session, None, &mut Unwatched) else { return (Vec::new(), None) };
     let problem = match session::problem(session, &measured) {
         Ok(problem) => problem,
+        // A workpiece is scanned for what a calibration is worth: that none is computed from it is not odd.
+        Err(NothingToSolve::Workpiece) => return (Vec::new(), None),
         Err(refusal) => return (Vec::new(), Some(refusal.to_string())),
     };
     let outcomes: Vec<_> = problem.methods().iter().map(|method| problem.solve(*method)).collect();

@@ -14,9 +14,11 @@ pub mod export;
 pub mod import;
 pub mod plan;
 pub mod report;
+pub mod scan;
 pub mod screenshot;
 pub mod simulate;
 pub mod solve;
+pub mod verify;
 
 /// The input is wrong.
 pub const EXIT_WRONG_INPUT: u8 = 2;
@@ -42,12 +44,16 @@ pub struct Args {
 pub enum Command {
     /// Runs the calibration methods on a session file
     Solve(solve::SolveArgs),
+    /// Says what calibrations are worth on other data: distances, stability, other targets
+    Verify(verify::VerifyArgs),
     /// Validates a session file and lists what is odd about it
     Check(check::CheckArgs),
     /// Imports poses and profiles (tables, robot programs, papers, folders) into a session file
     Import(Box<import::ImportArgs>),
     /// Exports the poses and profiles of a session file as CSV
     Export(export::ExportArgs),
+    /// Measures planes, teeth and diameters of a scanned part, and exports its points
+    Scan(Box<scan::ScanArgs>),
     /// Plans the stations to measure next
     Plan(plan::PlanArgs),
     /// Writes a simulated session with its truth
@@ -66,9 +72,11 @@ impl Command {
     pub fn run(&self) -> ExitCode {
         match self {
             Self::Solve(args) => solve::run(args),
+            Self::Verify(args) => verify::run(args),
             Self::Check(args) => check::run(args),
             Self::Import(args) => import::run(args),
             Self::Export(args) => export::run(args),
+            Self::Scan(args) => scan::run(args),
             Self::Plan(args) => plan::run(args),
             Self::Simulate(args) => simulate::run(args),
             Self::Cell(args) => cell::run(args),

@@ -7,8 +7,9 @@ use clap::ValueEnum;
 use thiserror::Error;
 
 use crate::calibrate::Mount;
+use crate::scene::PartKind;
 use crate::session::{Session, save};
-use crate::simulate::{Dirt, Fault, SimulationOptions, simulate};
+use crate::simulate::{Dirt, Fault, RoughMounting, SimulationOptions, SimulationTarget, simulate};
 
 use super::{EXIT_WRONG_INPUT, fail};
 
@@ -22,7 +23,65 @@ pub enum TargetArg {
     Plate,
     /// A tip or pin.
     Point,
+    /// A part that is scanned to see what a calibration is worth; --part says which.
+    Workpiece,
 }
+
+/// A workpiece.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum PartArg {
+    /// A square block, two faces of which are seen.
+    #[default]
+    Square,
+    /// A row of teeth.
+    Teeth,
+    /// A lying cylinder.
+    Cylinder,
+}
+
+impl PartArg {
+    const fn kind(self) -> PartKind {
+        match self {
+            Self::Square => PartKind::Square,
+            Self::Teeth => PartKind::Teeth,
+            Self::Cylinder => PartKind::Cylinder,
+        }
+    }
+}
+
+/// Another target of the same sensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FurtherArg {
+    /// A ball of the same radius.
+    Ball,
+    /// A right-angle plate.
+    Plate,
+    /// A tip or pin.
+    Point,
+    /// A square block.
+    Square,
+    /// A row of teeth.
+    Teeth,
+    /// A lying cylinder.
+    Cylinder,
+}
+
+impl FurtherArg {
+    const fn target(self) -> SimulationTarget {
+        match self {
+            Self::Ball => SimulationTarget::Ball,
+            Self::Plate => SimulationTarget::Part(PartKind::Plate),
+            Self::Point => SimulationTarget::Part(PartKind::Pin),
+            Self::Square => SimulationTarget::Part(PartKind::Square),
+            Self::Teeth => SimulationTarget::Part(PartKind::Teeth),
+            Self::Cylinder => SimulationTarget::Part(PartKind::Cylinder),
+        }
+    }
+}
+
+/// A rough mounting for the session, or none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoughArg(Option<RoughMounting>);
 
 /// Where the sensor is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -59,22 +118,38 @@ pub struct SimulateArgs {
     /// What is measured.
     #[arg(long, value_enum, default_value_t)]
     pub target: TargetArg,
+    /// The workpiece.
+    #[arg(long, value_enum, default_value_t)]
+    pub part: PartArg,
+    /// What else the same sensor measures on the same robot; may be given several times.
+    #[arg(long, value_enum, value_name = "TARGET", value_delimiter = ',')]
+    pub further: Vec<FurtherArg>,
     /// The same seed gives the same session.
     #[arg(long, default_value_t = SimulationOptions::default().seed)]
     pub seed: u64,
-    /// Number of stations.
-    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u16).range(1..=10_000))]
-    pub stations: u16,
-    /// Captures a station, the first strike included; 1 gives a fixed-point session.
-    #[arg(long, value_name = "N", default_value_t = 21, value_parser = clap::value_parser!(u16).range(1..=10_000))]
-    pub steps: u16,
+    /// Number of stations: 10 of a ball, 9 of each edge of a plate, 12 of a point, 2 scans of a workpiece if not given.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=10_000))]
+    pub stations: Option<u16>,
+    /// Captures a station: of a ball 21, the first strike included, and 1 gives a fixed-point session; of a workpiece the
+    /// profiles of a scan, over its whole length if not given; otherwise 1.
+    #[arg(
+        long, visible_alias = "captures", value_name = "N",
+        value_parser = clap::value_parser!(u16).range(1..=10_000)
+    )]
+    pub steps: Option<u16>,
     /// Points a profile.
     #[arg(long, value_name = "N", default_value_t = 800, value_parser = clap::value_parser!(u32).range(2..=100_000))]
     pub points: u32,
     /// Radius of the ball, mm.
     #[arg(long, value_name = "MM", default_value_t = SimulationOptions::default().radius_mm, value_parser = radius)]
     pub radius_mm: f64,
-    /// Commanded step, mm; 0.05 R if not given.
+    /// Write points that are already reduced in place of the profiles of a plate or point.
+    #[arg(long)]
+    pub reduced: bool,
+    /// How far the rough mounting in the session is off, degrees and mm, or none: 5,10 with a plate if not given.
+    #[arg(long, value_name = "DEG,MM", value_parser = rough_mounting)]
+    pub rough_mounting: Option<RoughArg>,
+    /// Commanded step, mm; 0.05 R of a ball, 0.33 mm from profile to profile of a workpiece if not given.
     #[arg(long, value_name = "MM", value_parser = length)]
     pub step_mm: Option<f64>,
     /// Distance of the first section from the ball's centre, mm; 0.6 R if not given.
@@ -98,12 +173,12 @@ pub struct SimulateArgs {
         value_parser = orientation_std
     )]
     pub orientation_std_deg: f64,
-    /// How far the stations tilt about two axes, degrees.
-    #[arg(long, value_name = "DEG", default_value_t = SimulationOptions::default().tilt_deg, value_parser = tilt)]
-    pub tilt_deg: f64,
-    /// How far the stations turn about the vertical, degrees.
-    #[arg(long, value_name = "DEG", default_value_t = SimulationOptions::default().spin_deg, value_parser = spin)]
-    pub spin_deg: f64,
+    /// How far the stations tilt about two axes, degrees; 25 of a ball, otherwise 20 if not given.
+    #[arg(long, value_name = "DEG", value_parser = tilt)]
+    pub tilt_deg: Option<f64>,
+    /// How far the stations turn about the vertical, degrees; 60 of a ball, otherwise 20 if not given.
+    #[arg(long, value_name = "DEG", value_parser = spin)]
+    pub spin_deg: Option<f64>,
     /// Angle between the robot's travel and the laser's normal, degrees.
     #[arg(long, value_name = "DEG", default_value_t = 0.0, value_parser = tilt)]
     pub travel_off_normal_deg: f64,
@@ -136,12 +211,21 @@ pub struct SimulateArgs {
 /// Why nothing is simulated.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SimulateRefusal {
-    /// Only the ball can be simulated so far.
-    #[error("--target {found}: not available yet, found {found}, expected ball")]
-    TargetNotAvailable {
-        /// The target asked for.
+    /// The faults are those of a ball session.
+    #[error("--fault: found {found} with another target, expected --target ball")]
+    FaultOfBall {
+        /// The fault.
         found: &'static str,
     },
+    /// Nothing of this target can be reduced to points.
+    #[error("--reduced: found {found}, expected --target plate or point")]
+    NotReduced {
+        /// The target.
+        found: &'static str,
+    },
+    /// A scan that stands still.
+    #[error("--step-mm: found 0, expected more than 0 for a scan")]
+    ScanStandsStill,
     /// The laser would miss the ball.
     #[error("--section-offset-mm: found {found_mm}, expected less than the radius of {radius_mm} mm")]
     SectionMissesBall {
@@ -164,7 +248,7 @@ pub enum SimulateRefusal {
         /// The number given.
         found: u16,
         /// How many stations there are.
-        num_stations: u16,
+        num_stations: usize,
     },
 }
 
@@ -196,38 +280,46 @@ pub fn simulated_session(args: &SimulateArgs) -> Result<Session, SimulateRefusal
 }
 
 fn options(args: &SimulateArgs) -> Result<SimulationOptions, SimulateRefusal> {
-    /// So that 21 captures from 0.6 R reach well past the largest arc.
-    const STEP_RATIO: f64 = 0.05;
-    match args.target {
-        TargetArg::Ball => {}
-        TargetArg::Plate => return Err(SimulateRefusal::TargetNotAvailable { found: "plate" }),
-        TargetArg::Point => return Err(SimulateRefusal::TargetNotAvailable { found: "point" }),
+    let target = match args.target {
+        TargetArg::Ball => SimulationTarget::Ball,
+        TargetArg::Plate => SimulationTarget::Part(PartKind::Plate),
+        TargetArg::Point => SimulationTarget::Part(PartKind::Pin),
+        TargetArg::Workpiece => SimulationTarget::Part(args.part.kind()),
+    };
+    let further: Vec<SimulationTarget> = args.further.iter().map(|further| further.target()).collect();
+    let usual = SimulationOptions::of(target);
+    // Whatever a plate is measured along with, its methods have something to start from.
+    let usual_rough = further.iter().find_map(|target| SimulationOptions::of(*target).rough_mounting);
+    let is_ball = target == SimulationTarget::Ball;
+    if let Some(fault) = args.fault.filter(|_| !is_ball) {
+        return Err(SimulateRefusal::FaultOfBall { found: fault.id() });
     }
-    let radius_mm = args.radius_mm;
-    if let Some(found_mm) = args.section_offset_mm.filter(|offset_mm| *offset_mm >= radius_mm) {
-        return Err(SimulateRefusal::SectionMissesBall { found_mm, radius_mm });
+    if args.reduced && (is_ball || target.is_workpiece()) {
+        return Err(SimulateRefusal::NotReduced { found: target.name() });
     }
-    let step_mm = args.step_mm.unwrap_or(STEP_RATIO * radius_mm);
-    if step_mm > radius_mm {
-        return Err(SimulateRefusal::StepTooLarge { found_mm: step_mm, radius_mm });
-    }
-    if let Some(found) = args.bad_pose.filter(|number| *number > args.stations) {
-        return Err(SimulateRefusal::NoSuchStation { found, num_stations: args.stations });
+    let (step_mm, num_steps) = steps(args, target, &usual)?;
+    let num_stations = args.stations.map_or(usual.num_stations, usize::from);
+    let num_all = if target == SimulationTarget::Part(PartKind::Plate) { 2 * num_stations } else { num_stations };
+    if let Some(found) = args.bad_pose.filter(|number| usize::from(*number) > num_all) {
+        return Err(SimulateRefusal::NoSuchStation { found, num_stations: num_all });
     }
     let has = |dirt: DirtArg| args.dirty.contains(&dirt) || args.dirty.contains(&DirtArg::All);
     Ok(SimulationOptions {
         seed: args.seed,
-        num_stations: args.stations.into(),
-        num_steps: args.steps.into(),
+        further,
+        num_stations,
+        num_steps,
         num_points: args.points as usize,
-        radius_mm,
+        radius_mm: args.radius_mm,
         step_mm,
         section_offset_mm: args.section_offset_mm,
         profile_std_mm: args.profile_std_mm,
+        has_points: args.reduced,
+        rough_mounting: args.rough_mounting.map_or(usual.rough_mounting.or(usual_rough), |RoughArg(given)| given),
         position_std_mm: args.position_std_mm,
         orientation_std_deg: args.orientation_std_deg,
-        tilt_deg: args.tilt_deg,
-        spin_deg: args.spin_deg,
+        tilt_deg: args.tilt_deg.unwrap_or(usual.tilt_deg),
+        spin_deg: args.spin_deg.unwrap_or(usual.spin_deg),
         travel_off_normal_deg: args.travel_off_normal_deg,
         mount: match args.mount {
             MountArg::OnFlange => Mount::OnFlange,
@@ -243,8 +335,52 @@ fn options(args: &SimulateArgs) -> Result<SimulationOptions, SimulateRefusal> {
         bad_pose_station: args.bad_pose.map(|number| usize::from(number) - 1),
         fault: args.fault,
         decimals: args.decimals,
-        ..SimulationOptions::default()
+        ..usual
     })
+}
+
+/// The commanded step and the number of captures a station.
+fn steps(
+    args: &SimulateArgs,
+    target: SimulationTarget,
+    usual: &SimulationOptions,
+) -> Result<(f64, usize), SimulateRefusal> {
+    /// So that 21 captures from 0.6 R reach well past the largest arc.
+    const STEP_RATIO: f64 = 0.05;
+    let given = args.steps.map(usize::from);
+    let radius_mm = args.radius_mm;
+    match target {
+        SimulationTarget::Ball => {
+            if let Some(found_mm) = args.section_offset_mm.filter(|offset_mm| *offset_mm >= radius_mm) {
+                return Err(SimulateRefusal::SectionMissesBall { found_mm, radius_mm });
+            }
+            let step_mm = args.step_mm.unwrap_or(STEP_RATIO * radius_mm);
+            if step_mm > radius_mm {
+                return Err(SimulateRefusal::StepTooLarge { found_mm: step_mm, radius_mm });
+            }
+            Ok((step_mm, given.unwrap_or(usual.num_steps)))
+        }
+        SimulationTarget::Part(kind) if target.is_workpiece() => {
+            let step_mm = args.step_mm.unwrap_or(usual.step_mm);
+            if step_mm <= 0.0 {
+                return Err(SimulateRefusal::ScanStandsStill);
+            }
+            Ok((step_mm, given.unwrap_or_else(|| SimulationOptions::steps_to_scan(kind, step_mm))))
+        }
+        SimulationTarget::Part(_) => Ok((usual.step_mm, given.unwrap_or(usual.num_steps))),
+    }
+}
+
+fn rough_mounting(text: &str) -> Result<RoughArg, String> {
+    if text == "none" {
+        return Ok(RoughArg(None));
+    }
+    let [max_deg, max_mm] = SimulationOptions::MAX_ROUGH;
+    let number = |text: &str, max: f64| text.trim().parse().ok().filter(|value| (0.0..=max).contains(value));
+    text.split_once(',')
+        .and_then(|(deg, mm)| Some(RoughMounting { off_deg: number(deg, max_deg)?, off_mm: number(mm, max_mm)? }))
+        .map(|rough| RoughArg(Some(rough)))
+        .ok_or_else(|| format!("expected degrees up to {max_deg} and mm up to {max_mm}, such as 5,10, or none"))
 }
 
 fn radius(text: &str) -> Result<f64, String> {
@@ -305,6 +441,23 @@ mod tests {
     }
 
     #[test]
+    fn each_target_has_its_usual_options() {
+        for (arguments, kind) in [
+            ("--target plate", PartKind::Plate),
+            ("--target point", PartKind::Pin),
+            ("--target workpiece", PartKind::Square),
+            ("--target workpiece --part teeth", PartKind::Teeth),
+        ] {
+            let options = options(&parsed(arguments).expect("valid")).expect("valid");
+            assert_eq!(options, SimulationOptions::of(SimulationTarget::Part(kind)), "{arguments}");
+        }
+        let rough = |arguments: &str| options(&parsed(arguments).expect("valid")).expect("valid").rough_mounting;
+        assert_eq!(rough("--further point,plate"), Some(RoughMounting { off_deg: 5.0, off_mm: 10.0 }));
+        assert_eq!(rough("--target plate --rough-mounting none"), None);
+        assert_eq!(rough("--rough-mounting 2,3.5"), Some(RoughMounting { off_deg: 2.0, off_mm: 3.5 }));
+    }
+
+    #[test]
     fn values_out_of_range_are_refused_by_name() {
         for (arguments, culprit) in [
             ("--radius-mm -1", "--radius-mm"),
@@ -315,6 +468,9 @@ mod tests {
             ("--profile-std-mm inf", "--profile-std-mm"),
             ("--tilt-deg 90", "--tilt-deg"),
             ("--dirty mud", "--dirty"),
+            ("--rough-mounting 5", "expected degrees up to 90 and mm up to 1000"),
+            ("--rough-mounting 5,nan", "--rough-mounting"),
+            ("--further mud", "--further"),
             ("--fault gremlin", "expected one of pose-convention, quaternion-order"),
         ] {
             let refusal = parsed(arguments).expect_err(arguments).to_string();
@@ -325,8 +481,11 @@ mod tests {
     #[test]
     fn arguments_that_do_not_go_together_are_refused_in_one_line() {
         for (arguments, fragment) in [
-            ("--target plate", "not available yet"),
-            ("--target point", "not available yet"),
+            ("--target plate --fault drift", "--fault: found drift with another target"),
+            ("--reduced", "--reduced: found ball, expected --target plate or point"),
+            ("--target workpiece --reduced", "--reduced: found square block"),
+            ("--target workpiece --step-mm 0", "--step-mm: found 0"),
+            ("--target plate --stations 5 --bad-pose 11", "expected 1 to 10"),
             ("--section-offset-mm 15", "expected less than the radius of 15 mm"),
             ("--step-mm 16", "expected at most the radius of 15 mm"),
             ("--stations 5 --bad-pose 6", "expected 1 to 5"),

@@ -202,9 +202,25 @@ pub fn sentence(text: &str) -> String {
     shown
 }
 
+/// What the system says, without its number.
+#[must_use]
+pub fn system_words(error: &std::io::Error) -> String {
+    let told = error.to_string();
+    told.split_once(" (os error ").map_or(told.as_str(), |(words, _)| words).to_owned()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn errors_of_the_system_are_words() {
+        let refused = std::io::Error::from_raw_os_error(111);
+        assert!(refused.to_string().contains("os error"));
+        let told = system_words(&refused);
+        assert!(!told.is_empty() && !told.contains("os error") && !told.contains('('), "{told}");
+        assert_eq!(system_words(&std::io::Error::other("deadline passed")), "deadline passed");
+    }
 
     #[test]
     fn what_comes_from_a_wire_is_shown_short_and_on_one_line() {

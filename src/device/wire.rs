@@ -6,7 +6,7 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::error::DeviceError;
+use super::error::{DeviceError, system_words};
 use super::setup::Endpoint;
 
 /// What is left until a deadline, at least this: a timeout of zero means none to the system.
@@ -51,10 +51,10 @@ impl Wire {
             match TcpStream::connect_timeout(&socket_address, left_until(deadline)) {
                 Ok(stream) => {
                     // Requests are small and wait for their answer; to hold them back only costs time.
-                    stream.set_nodelay(true).map_err(|error| failed(error.to_string()))?;
+                    stream.set_nodelay(true).map_err(|error| failed(system_words(&error)))?;
                     return Ok(Self { device, stream, received: Vec::new() });
                 }
-                Err(error) => reason = error.to_string(),
+                Err(error) => reason = system_words(&error),
             }
         }
         Err(failed(reason))

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::Feature;
+use super::{Feature, Sighting};
 
 /// Why a set of points has no circle.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -83,14 +83,77 @@ pub enum EdgeRefusal {
         /// The least number that will do.
         needed: usize,
     },
+    /// No piece of the profile is straight.
+    #[error(
+        "no straight piece of at least {needed} points found among {num_points}; a plate's surface is one. Check that the line crosses the plate"
+    )]
+    NoFlank {
+        /// Number of valid points searched.
+        num_points: usize,
+        /// Points that make a flank.
+        needed: usize,
+    },
     /// Nothing in the profile looks like what was asked for.
-    #[error("no {name} found among {num_points} points. Check that the line crosses it", name = name(*feature))]
+    #[error("no {name} found among {num_points} points. Check that the line crosses it, and that it is well inside the field of view", name = name(*feature))]
     NoFeature {
         /// What was looked for.
         feature: Option<Feature>,
         /// Number of valid points searched.
         num_points: usize,
     },
+    /// The profile shows something, but not what was asked for.
+    #[error(
+        "no {name} found, but {seen}. Move the line to the {name}, or choose what is seen",
+        name = name(Some(*wanted)),
+        seen = listed(seen)
+    )]
+    OtherFeature {
+        /// What was looked for.
+        wanted: Feature,
+        /// What there is.
+        seen: Vec<Sighting>,
+    },
+    /// There are several, and nothing tells which is meant.
+    #[error("found {seen}; exactly one may be in view. Move the sensor so that the others leave its field of view", seen = listed(seen))]
+    Ambiguous {
+        /// What there is.
+        seen: Vec<Sighting>,
+    },
+    /// The surface hardly bends.
+    #[error(
+        "the flanks meet at {found_deg:.1}°; a corner needs at least {needed_deg:.0}°. Tilt the sensor, or let the line cross a sharper edge"
+    )]
+    TooFlat {
+        /// Angle between the flanks, degrees.
+        found_deg: f64,
+        /// The least angle that will do, degrees.
+        needed_deg: f64,
+    },
+    /// What stands out is no tip.
+    #[error(
+        "what stands out is {found_mm:.2} mm wide; a tip is below {limit_mm:.2} mm in this field of view. Move the line nearer to its end"
+    )]
+    TipTooWide {
+        /// Its width, mm.
+        found_mm: f64,
+        /// The largest width that will do, mm.
+        limit_mm: f64,
+    },
+}
+
+fn listed(seen: &[Sighting]) -> String {
+    let named: Vec<String> =
+        seen.iter().map(|seen| format!("{} at x = {:.2} mm", article(seen.feature), seen.x_mm)).collect();
+    named.join(" and ")
+}
+
+const fn article(feature: Feature) -> &'static str {
+    match feature {
+        Feature::Edge => "an edge",
+        Feature::Corner => "a corner",
+        Feature::Step => "a step",
+        Feature::Tip => "a tip",
+    }
 }
 
 const fn name(feature: Option<Feature>) -> &'static str {

@@ -1,7 +1,7 @@
-//! Fits of circles to profile points, and the extraction of the ball's arc from a real profile.
+//! Fits of circles and lines to profile points, and the extraction of arcs, edges and tips from a real profile.
 //!
 //! Everything here works in the laser plane: points (x, z) in mm, z along the range axis, whichever way it points.
-//! This floor is pure; the random search in [`arc`] is seeded, so the same profile gives the same bits.
+//! This floor is pure; the random searches are seeded, so the same profile gives the same bits.
 
 pub mod algebraic;
 pub mod arc;
@@ -9,11 +9,12 @@ pub mod circle;
 pub mod edge;
 pub mod error;
 pub mod geometric;
+pub mod line;
 pub mod ransac;
 pub mod robust;
 pub(crate) mod sums;
 
 pub use arc::{ArcFit, ArcOptions, PointClass, extract_arc};
 pub use circle::{Circle, CircleFit, CircleMethod};
-pub use edge::{EdgeFit, EdgeOptions, Feature, Flank, extract_edge};
+pub use edge::{EdgeFit, EdgeOptions, Feature, Flank, Sighting, extract_edge};
 pub use error::{ArcRefusal, EdgeRefusal, FitError, Refusal};

@@ -149,7 +149,7 @@ fn rigid(motion: &Rigid) -> Value {
     transform(&Transform::<Base, Base>::from_rigid(*motion))
 }
 
-fn transform<Dst: Frame, Src: Frame>(transform: &Transform<Dst, Src>) -> Value {
+pub(super) fn transform<Dst: Frame, Src: Frame>(transform: &Transform<Dst, Src>) -> Value {
     let matrix = transform.matrix();
     let rows: Vec<Vec<f64>> = (0..4).map(|row| (0..4).map(|column| matrix[(row, column)]).collect()).collect();
     json!({

@@ -1,13 +1,18 @@
-//! What a laser line sees: the ball, and the table below it; and the seeded randomness of all that is simulated.
+//! What a laser line sees: a ball or a part, and the table below it; and the seeded randomness of all that is simulated.
 
 mod dirt;
+mod line;
+mod part;
 pub mod random;
+mod solid;
 
 use nalgebra::{Quaternion, UnitQuaternion};
 
 use crate::geometry::{Profile, Rigid, Vec3};
 
 pub use dirt::Dirt;
+pub use line::{LINE_WIDTH_MM, Line};
+pub use part::{CYLINDER_DIAMETER_MM, PITCH_MM, PLATE_EDGE_MM, Part, PartKind, TOOTH_HEIGHT_MM};
 pub use random::Random;
 
 /// Steeper than this, no light comes back to the sensor.
@@ -16,15 +21,6 @@ pub const MAX_INCIDENCE_DEG: f64 = 75.0;
 const BIASED_INCIDENCE_DEG: f64 = 50.0;
 /// The bias at the steepest flank that is still seen, mm.
 const FLANK_BIAS_MM: f64 = 0.12;
-/// The part of the points that are spikes.
-const SPIKE_RATIO: f64 = 0.015;
-/// Sizes of the spikes, mm.
-const SPIKE_MM: [f64; 2] = [0.5, 6.0];
-/// The part of single missing points.
-const MISSING_RATIO: f64 = 0.02;
-/// Runs of missing points, and the part of the profile that each takes at most.
-const NUM_HOLES: usize = 2;
-const HOLE_RATIO: f64 = 0.06;
 /// Gap between the ball and the table, in radii: the ball stands on a post.
 const POST_RADII: f64 = 0.8;
 /// Half of the measuring range along z, in radii, about the ball's centre.
@@ -79,31 +75,14 @@ impl Scene {
     #[must_use]
     pub fn profile(&self, world_from_sensor: &Rigid, noise: &mut Random, dirt: &mut Random) -> Profile {
         let ball_in_sensor = world_from_sensor.inverse_transform_point(&self.ball_in_world.into()).coords;
-        let x_mm: Vec<f64> = (0..self.num_points).map(|idx| self.rounded(self.grid_x_mm(idx))).collect();
-        let mut z_mm: Vec<Option<f64>> = x_mm
-            .iter()
-            .map(|x| {
-                // Drawn for every point, so that what one point hits does not shift the noise of the next.
-                let error_mm = self.profile_std_mm * noise.normal();
-                Some(self.seen_z_mm(*x, ball_in_sensor, world_from_sensor)? + error_mm)
-            })
-            .collect();
-        if self.dirt.has_spikes {
-            add_spikes(&mut z_mm, dirt);
-        }
-        if self.dirt.has_holes {
-            add_holes(&mut z_mm, dirt);
-        }
-        for z in z_mm.iter_mut().flatten() {
-            *z = self.rounded(*z);
-        }
-        checked_profile(x_mm, &z_mm)
-    }
-
-    #[expect(clippy::cast_precision_loss, reason = "a profile has far fewer than 2^52 points")]
-    fn grid_x_mm(&self, idx: usize) -> f64 {
-        let part = idx as f64 / (self.num_points - 1) as f64;
-        (part - 0.5) * WIDTH_RADII * self.radius_mm
+        let line = Line {
+            num_points: self.num_points,
+            width_mm: WIDTH_RADII * self.radius_mm,
+            profile_std_mm: self.profile_std_mm,
+            dirt: self.dirt,
+            decimals: self.decimals,
+        };
+        line.profile(noise, dirt, |x| self.seen_z_mm(x, ball_in_sensor, world_from_sensor))
     }
 
     /// What the line at `x` along the range axis meets first; the table counts whether the profiles show it or not.
@@ -146,10 +125,6 @@ impl Scene {
             ((incidence_deg - BIASED_INCIDENCE_DEG) / (MAX_INCIDENCE_DEG - BIASED_INCIDENCE_DEG)).clamp(0.0, 1.0);
         if self.dirt.has_flank_bias { -self.range_sign * FLANK_BIAS_MM * steepness * steepness } else { 0.0 }
     }
-
-    fn rounded(&self, value: f64) -> f64 {
-        rounded(value, self.decimals)
-    }
 }
 
 /// To so many decimals.
@@ -168,40 +143,4 @@ pub fn rounded(value: f64, decimals: Option<u8>) -> f64 {
 pub fn rounded_rotation(rotation: &UnitQuaternion<f64>, decimals: u8) -> UnitQuaternion<f64> {
     let quaternion = rotation.as_ref().coords.map(|value| rounded(value, Some(decimals)));
     UnitQuaternion::new_normalize(Quaternion::from_vector(quaternion))
-}
-
-fn add_spikes(z_mm: &mut [Option<f64>], dirt: &mut Random) {
-    for z in z_mm.iter_mut().flatten() {
-        if dirt.unit() < SPIKE_RATIO {
-            let size_mm = SPIKE_MM[0] + (SPIKE_MM[1] - SPIKE_MM[0]) * dirt.unit();
-            *z += size_mm * dirt.signed_unit().signum();
-        }
-    }
-}
-
-#[expect(
-    clippy::cast_precision_loss,
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "positions in a profile: small, and not negative"
-)]
-fn add_holes(z_mm: &mut [Option<f64>], dirt: &mut Random) {
-    let len = z_mm.len() as f64;
-    for _ in 0..NUM_HOLES {
-        let start = (dirt.unit() * len) as usize;
-        let end = start + (dirt.unit() * HOLE_RATIO * len) as usize;
-        for z in z_mm.iter_mut().take(end).skip(start) {
-            *z = None;
-        }
-    }
-    for z in z_mm {
-        if dirt.unit() < MISSING_RATIO {
-            *z = None;
-        }
-    }
-}
-
-#[expect(clippy::expect_used, reason = "the options' limits keep every point within a profile's")]
-fn checked_profile(x_mm: Vec<f64>, z_mm: &[Option<f64>]) -> Profile {
-    Profile::new(x_mm, z_mm).expect("simulated points are finite and within reach")
 }

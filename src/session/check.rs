@@ -6,7 +6,7 @@ use crate::calibrate::ball::MIN_STATIONS;
 use crate::geometry::stats::median;
 use crate::geometry::{Rigid, Vec3};
 
-use super::{Capture, Reading, Session, Station, Target};
+use super::{Capture, Edge, FurtherTarget, Reading, Session, Station, Target};
 
 /// Poses nearer than this in position and ...
 pub const TWIN_DISTANCE_MM: f64 = 0.5;
@@ -18,6 +18,8 @@ pub const REACH_MM: f64 = 10_000.0;
 pub const FAR_FROM_OTHERS_RATIO: f64 = 8.0;
 /// ... and by this distance at least. Stations lie within a few hundred millimetres; a slipped digit is beyond.
 pub const FAR_FROM_OTHERS_MM: f64 = 400.0;
+/// Points on an edge of a plate that the paper asks for.
+pub const STATIONS_AN_EDGE: usize = 6;
 /// Fewer stations have no middle that one of them could be far from.
 const MIN_STATIONS_FOR_MIDDLE: usize = 4;
 /// Commanded step and moved distance may differ by this much and a tenth of the step.
@@ -45,6 +47,27 @@ pub enum Finding {
         num_enabled: usize,
         /// How many are needed.
         needed: usize,
+    },
+    /// No station that takes part saw this edge of the plate.
+    EdgeWithoutStations {
+        /// The edge.
+        edge: Edge,
+    },
+    /// Few stations that take part saw this edge of the plate.
+    FewOnEdge {
+        /// The edge.
+        edge: Edge,
+        /// How many are enabled.
+        num_enabled: usize,
+        /// How many are needed.
+        needed: usize,
+    },
+    /// Something to look at in a further target.
+    InFurther {
+        /// Its name.
+        name: String,
+        /// What there is.
+        finding: Box<Finding>,
     },
     /// Two stations measured from the same pose.
     TwinStations {
@@ -115,6 +138,9 @@ impl Finding {
             Self::QuaternionsNormalised { .. } => "quaternions-normalised",
             Self::NoStations => "no-stations",
             Self::FewStations { .. } => "few-stations",
+            Self::EdgeWithoutStations { .. } => "edge-without-stations",
+            Self::FewOnEdge { .. } => "few-on-edge",
+            Self::InFurther { finding, .. } => finding.code(),
             Self::TwinStations { .. } => "twin-stations",
             Self::NoReading { .. } => "no-reading",
             Self::EmptyProfile { .. } => "empty-profile",
@@ -125,7 +151,13 @@ impl Finding {
         }
     }
 
-    /// The station that it is about, if it is about one.
+    /// Whether it says that stations are missing without which nothing can be solved.
+    #[must_use]
+    pub const fn lacks_stations(&self) -> bool {
+        matches!(self, Self::NoStations | Self::FewStations { .. } | Self::EdgeWithoutStations { .. })
+    }
+
+    /// The station of the session's own target that it is about, if it is about one.
     #[must_use]
     pub fn station_label(&self) -> Option<&str> {
         match self {
@@ -138,28 +170,70 @@ impl Finding {
             Self::QuaternionsNormalised { .. }
             | Self::NoStations
             | Self::FewStations { .. }
+            | Self::EdgeWithoutStations { .. }
+            | Self::FewOnEdge { .. }
+            | Self::InFurther { .. }
             | Self::NoiseNotGiven { .. } => None,
         }
     }
 }
 
-/// What is odd about a session: first the session as a whole, then its stations in order.
+/// What is odd about a session: first the session as a whole, then its stations in order, then its further targets.
 #[must_use]
 pub fn findings(session: &Session) -> Vec<Finding> {
     if matches!(session.target, Target::Rgbd { .. }) {
         return Vec::new();
     }
-    let mut findings = Vec::new();
-    let num_enabled = session.stations.iter().filter(|station| station.enabled).count();
-    if session.stations.is_empty() {
-        findings.push(Finding::NoStations);
-    } else if num_enabled < MIN_STATIONS {
-        findings.push(Finding::FewStations { num_enabled, needed: MIN_STATIONS });
-    }
+    let mut findings = missing_stations(&session.target, &session.stations);
     findings.extend(noise_not_given(session));
-    let mut twins = twins(session);
-    let mut far = far_from_others(session);
-    for (station_idx, station) in session.stations.iter().enumerate() {
+    findings.extend(of_stations(&session.target, &session.stations));
+    for FurtherTarget { name, target, stations, .. } in &session.further {
+        let missing = missing_stations(target, stations);
+        findings.extend(
+            missing
+                .into_iter()
+                .chain(of_stations(target, stations))
+                .map(|finding| Finding::InFurther { name: name.clone(), finding: Box::new(finding) }),
+        );
+    }
+    findings
+}
+
+/// Whether there are the stations that the methods for this target need.
+fn missing_stations(target: &Target, stations: &[Station]) -> Vec<Finding> {
+    if stations.is_empty() {
+        return vec![Finding::NoStations];
+    }
+    let num_enabled =
+        |is_counted: &dyn Fn(&Station) -> bool| stations.iter().filter(|s| s.enabled && is_counted(s)).count();
+    match target {
+        Target::Ball { .. } | Target::Point => {
+            let num_enabled = num_enabled(&|_| true);
+            let is_few = num_enabled < MIN_STATIONS;
+            is_few.then_some(Finding::FewStations { num_enabled, needed: MIN_STATIONS }).into_iter().collect()
+        }
+        Target::RightAnglePlate => [Edge::P, Edge::Q]
+            .into_iter()
+            .filter_map(|edge| match num_enabled(&|station| station.edge == Some(edge)) {
+                0 => Some(Finding::EdgeWithoutStations { edge }),
+                num_enabled if num_enabled < STATIONS_AN_EDGE => {
+                    Some(Finding::FewOnEdge { edge, num_enabled, needed: STATIONS_AN_EDGE })
+                }
+                _ => None,
+            })
+            .collect(),
+        // One scan is a workpiece measured.
+        Target::Workpiece | Target::Rgbd { .. } => Vec::new(),
+    }
+}
+
+/// What is odd about stations, in their order.
+fn of_stations(target: &Target, stations: &[Station]) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    // Two scans may well begin at the same pose.
+    let mut twins = if *target == Target::Workpiece { HashMap::new() } else { twins(stations) };
+    let mut far = far_from_others(stations);
+    for (station_idx, station) in stations.iter().enumerate() {
         findings.extend(empty_profiles(station));
         match far_pose(station) {
             Some(finding) => findings.push(finding),
@@ -171,7 +245,11 @@ pub fn findings(session: &Session) -> Vec<Finding> {
     findings
 }
 
+/// Of a workpiece nothing is solved that would need it.
 fn noise_not_given(session: &Session) -> Option<Finding> {
+    if session.target == Target::Workpiece {
+        return None;
+    }
     let has_profiles = session
         .stations
         .iter()
@@ -239,8 +317,8 @@ fn pose_of(station: &Station) -> Option<&Rigid> {
 }
 
 /// The stations whose positions lie outside the crowd, by their indices.
-fn far_from_others(session: &Session) -> HashMap<usize, Finding> {
-    let positions: Vec<(usize, Vec3)> = (session.stations.iter().enumerate())
+fn far_from_others(stations: &[Station]) -> HashMap<usize, Finding> {
+    let positions: Vec<(usize, Vec3)> = (stations.iter().enumerate())
         .filter(|(_, station)| station.enabled)
         .filter_map(|(station_idx, station)| Some((station_idx, pose_of(station)?.translation.vector)))
         .collect();
@@ -257,7 +335,7 @@ fn far_from_others(session: &Session) -> HashMap<usize, Finding> {
     (positions.iter())
         .filter(|(_, position)| distance_mm(position) > limit_mm)
         .map(|(station_idx, position)| {
-            let label = session.stations[*station_idx].label.clone();
+            let label = stations[*station_idx].label.clone();
             (*station_idx, Finding::FarFromOthers { label, distance_mm: distance_mm(position), typical_mm })
         })
         .collect()
@@ -267,18 +345,18 @@ fn far_from_others(session: &Session) -> HashMap<usize, Finding> {
 /// point twins are as useless as for the ball.
 ///
 /// Poses are sorted into cells of space as wide as twins may be apart, so only neighbours are compared.
-fn twins(session: &Session) -> HashMap<usize, Vec<Finding>> {
+fn twins(stations: &[Station]) -> HashMap<usize, Vec<Finding>> {
     #[expect(clippy::cast_possible_truncation, reason = "positions are within 1e6 mm")]
     let cell_of = |position: &Vec3| [0, 1, 2].map(|axis| (position[axis] / TWIN_DISTANCE_MM).floor() as i64);
     let mut earlier: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
     let mut twins: HashMap<usize, Vec<Finding>> = HashMap::new();
-    for (station_idx, station) in session.stations.iter().enumerate().filter(|(_, station)| station.enabled) {
+    for (station_idx, station) in stations.iter().enumerate().filter(|(_, station)| station.enabled) {
         let Some(pose) = pose_of(station) else { continue };
         let [x, y, z] = cell_of(&pose.translation.vector);
         let neighbours = (0..27_i64).map(|n| [x + n % 3 - 1, y + n / 3 % 3 - 1, z + n / 9 - 1]);
         let twin = (neighbours.filter_map(|cell| earlier.get(&cell)).flatten())
             .filter_map(|other_idx| {
-                let other = pose_of(&session.stations[*other_idx])?;
+                let other = pose_of(&stations[*other_idx])?;
                 let distance_mm = (pose.translation.vector - other.translation.vector).norm();
                 let angle_deg = pose.rotation.angle_to(&other.rotation).to_degrees();
                 let is_twin = distance_mm < TWIN_DISTANCE_MM && angle_deg < TWIN_ANGLE_DEG;
@@ -286,7 +364,7 @@ fn twins(session: &Session) -> HashMap<usize, Vec<Finding>> {
             })
             .min_by_key(|(other_idx, ..)| *other_idx);
         if let Some((other_idx, distance_mm, angle_deg)) = twin {
-            let label = session.stations[other_idx].label.clone();
+            let label = stations[other_idx].label.clone();
             let twin_label = station.label.clone();
             let finding = Finding::TwinStations { label, twin_label, distance_mm, angle_deg };
             twins.entry(other_idx).or_default().push(finding);
@@ -425,6 +503,66 @@ mod tests {
         check(
             |session| session.stations[2].captures[0].reading = Reading::Profile(Arc::new(Profile::default())),
             &[Finding::NoReading { label: "s2".to_owned(), capture_idx: 0 }],
+        );
+    }
+
+    #[test]
+    fn a_plate_needs_stations_on_both_edges() {
+        let on_edges = |session: &mut Session, edges: &str| {
+            session.target = Target::RightAnglePlate;
+            let given = session.stations[0].clone();
+            let edge = |letter| if letter == 'p' { Edge::P } else { Edge::Q };
+            let shift = |idx: usize| Vec3::new(0.0, 10.0 * f64::from(u32::try_from(idx).unwrap_or_default()), 0.0);
+            session.stations = (edges.chars().enumerate())
+                .map(|(idx, letter)| {
+                    let mut station = Station { label: idx.to_string(), edge: Some(edge(letter)), ..given.clone() };
+                    station.captures.truncate(1);
+                    let pose = &mut station.captures[0].base_from_flange;
+                    *pose = Transform::from_parts(pose.translation_mm() + shift(idx), pose.rotation());
+                    station
+                })
+                .collect();
+        };
+        check(|session| on_edges(session, "ppppppqqqqqq"), &[]);
+        check(|session| on_edges(session, "pppppp"), &[Finding::EdgeWithoutStations { edge: Edge::Q }]);
+        check(
+            |session| {
+                on_edges(session, "ppppppqqqqqq");
+                session.stations[7].enabled = false;
+            },
+            &[Finding::FewOnEdge { edge: Edge::Q, num_enabled: 5, needed: 6 }],
+        );
+    }
+
+    #[test]
+    fn further_targets_are_looked_at_as_well() {
+        let in_tip = |finding| Finding::InFurther { name: "tip".to_owned(), finding: Box::new(finding) };
+        let tip = |stations| FurtherTarget {
+            name: "tip".to_owned(),
+            target: Target::Point,
+            known: super::super::Known::default(),
+            stations,
+            unknown: UnknownFields::new(),
+        };
+        check(|session| session.further.push(tip(Vec::new())), &[in_tip(Finding::NoStations)]);
+        check(
+            |session| session.further.push(tip(session.stations[..2].to_vec())),
+            &[in_tip(Finding::FewStations { num_enabled: 2, needed: 4 })],
+        );
+        assert_eq!(in_tip(Finding::NoStations).code(), "no-stations");
+        let far = Finding::FarPose { label: "1".to_owned(), capture_idx: 0, distance_mm: 20_000.0 };
+        assert_eq!(in_tip(far).station_label(), None, "labels are those of the session's own stations");
+    }
+
+    #[test]
+    fn a_workpiece_needs_one_scan_and_no_noise() {
+        check(
+            |session| {
+                session.target = Target::Workpiece;
+                session.robot.position_std_mm = None;
+                session.stations.truncate(1);
+            },
+            &[],
         );
     }
 

@@ -40,3 +40,6 @@ pub(super) const POINT_MM: Quantity = Quantity { what: "a coordinate in mm", min
 pub(super) const STEP_MM: Quantity = Quantity { what: "a move in mm", min: -1e5, max: 1e5 };
 pub(super) const QUATERNION: Quantity = Quantity { what: "a component of a unit quaternion", min: -1.001, max: 1.001 };
 pub(super) const ANGLE_DEG: Quantity = Quantity { what: "an angle in degrees", min: -36_000.0, max: 36_000.0 };
+pub(super) const PLANE_ANGLE_DEG: Quantity =
+    Quantity { what: "an angle between two planes in degrees", min: 0.0, max: 180.0 };
+pub(super) const PART_SIZE_MM: Quantity = Quantity { what: "a part's size in mm", min: 1e-3, max: 1e4 };

@@ -11,6 +11,7 @@ mod limits;
 pub mod measure;
 pub mod model;
 pub mod samples;
+pub mod scans;
 pub mod table;
 
 pub use edit::{Edit, EditRefusal, Place, Row, SetupField};
@@ -22,3 +23,4 @@ pub use model::{
     Capture, Edge, FurtherTarget, Known, Published, Reading, Robot, Sensor, Session, Station, Target, Truth,
     WrittenAngles,
 };
+pub use scans::SessionScan;

@@ -189,9 +189,10 @@ pub struct Published {
 pub struct Truth {
     /// The true calibration. For [`Mount::Fixed`] it is `base_from_sensor`.
     pub flange_from_sensor: Transform<Flange, SensorFrame>,
-    /// The true ball centre, tip or plate's corner, mm. For [`Mount::Fixed`] it is in the flange.
+    /// The true ball centre, tip or plate's corner, mm; zero for a workpiece, which has no such point. For
+    /// [`Mount::Fixed`] it is in the flange.
     pub target_in_base_mm: Vec3,
-    /// The true plate: origin in its corner, x along edge p, y along edge q.
+    /// The true plate: origin in its corner, x along edge p, y along edge q. For [`Mount::Fixed`] it is in the flange.
     pub base_from_plate: Option<Rigid>,
     /// Fields unknown to us.
     pub unknown: UnknownFields,

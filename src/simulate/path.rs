@@ -1,4 +1,4 @@
-//! Where the robot goes: stations about the ball, and the sweeps across it.
+//! Where the robot goes: stations about the target, and the sweeps across a ball.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -14,18 +14,18 @@ use super::options::SimulationOptions;
 const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
 /// Decimals of the true mounting's quaternion.
 const MOUNTING_DECIMALS: u8 = 12;
-/// Distance of the ball's near surface along the range axis, about, mm.
-const STANDOFF_MM: f64 = 80.0;
+/// Distance of the near surface along the range axis, about, mm.
+pub(super) const STANDOFF_MM: f64 = 80.0;
 
-/// What is mounted where, and where the ball is.
+/// What is mounted where, and where the target is: a ball's centre, or the place that stands for a part.
 ///
-/// The *world* is what the ball stands still in, the *carrier* is what the sensor is mounted on. With the sensor on the
+/// The *world* is what the target stands still in, the *carrier* is what the sensor is mounted on. With the sensor on the
 /// flange these are the base and the flange; a fixed sensor is the same with the roles exchanged.
 #[derive(Clone, Debug)]
 pub(super) struct Setup {
     pub carrier_from_sensor: Rigid,
-    pub ball_in_world: Vec3,
-    /// Orientation of the carrier at which the sensor looks at the ball along the world's −z.
+    pub target_in_world: Vec3,
+    /// Orientation of the carrier at which the sensor looks at the target along the world's −z.
     world_from_carrier_upright: UnitQuaternion<f64>,
 }
 
@@ -44,7 +44,7 @@ impl Setup {
                     Translation3::new(12.0, -3.0, 118.0),
                     mounting(about(Vec3::z(), FRAC_PI_2)),
                 ),
-                ball_in_world: Vec3::new(452.0, -118.0, 96.0),
+                target_in_world: Vec3::new(452.0, -118.0, 96.0),
                 world_from_carrier_upright: UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(
                     0.0, 1.0, 0.0, 0.0,
                 )),
@@ -55,10 +55,53 @@ impl Setup {
                     Translation3::new(820.0, 35.0, 410.0),
                     mounting(about(Vec3::y(), -FRAC_PI_2)),
                 ),
-                ball_in_world: Vec3::new(4.0, -7.0, 132.0),
+                target_in_world: Vec3::new(4.0, -7.0, 132.0),
                 world_from_carrier_upright: about(Vec3::y(), -FRAC_PI_2),
             },
         }
+    }
+
+    /// The same before another target, so far beside the first that none stands in the other's way.
+    #[expect(clippy::cast_precision_loss, reason = "a handful of targets")]
+    pub fn beside(&self, num_places: usize) -> Self {
+        const PLACE_MM: Vec3 = Vec3::new(-70.0, 130.0, 0.0);
+        Self { target_in_world: self.target_in_world + PLACE_MM * num_places as f64, ..self.clone() }
+    }
+
+    /// What the controller would report without an error, with the sensor there.
+    pub fn base_from_flange(&self, mount: Mount, world_from_sensor: &Rigid) -> Rigid {
+        let world_from_carrier = world_from_sensor * self.carrier_from_sensor.inverse();
+        match mount {
+            Mount::OnFlange => world_from_carrier,
+            Mount::Fixed => world_from_carrier.inverse(),
+        }
+    }
+
+    /// The sensor's orientation that looks straight down.
+    pub fn upright(&self) -> UnitQuaternion<f64> {
+        self.world_from_carrier_upright * self.carrier_from_sensor.rotation
+    }
+
+    /// The sensor's orientation at the station of this index. The first one looks straight down; the rest tilt and turn
+    /// about it.
+    #[expect(clippy::cast_precision_loss, reason = "a session has far fewer than 2^52 stations")]
+    pub fn orientation(
+        &self,
+        options: &SimulationOptions,
+        station_idx: usize,
+        random: &mut Random,
+    ) -> UnitQuaternion<f64> {
+        let turn = if station_idx == 0 {
+            UnitQuaternion::identity()
+        } else {
+            let azimuth = GOLDEN_ANGLE * station_idx as f64;
+            let tilt = options.tilt_deg.to_radians() * (0.85 + 0.15 * random.unit());
+            let spin = options.spin_deg.to_radians() * spread(station_idx) * (0.9 + 0.1 * random.unit());
+            so3::exp(Vec3::z() * spin)
+                * so3::exp(Vec3::y() * tilt * azimuth.sin())
+                * so3::exp(Vec3::x() * tilt * azimuth.cos())
+        };
+        turn * self.world_from_carrier_upright * self.carrier_from_sensor.rotation
     }
 }
 
@@ -73,31 +116,19 @@ pub(super) struct StationPath {
 }
 
 impl StationPath {
-    /// The station of this index. The first one looks straight down; the rest tilt and turn about it.
-    #[expect(clippy::cast_precision_loss, reason = "a session has far fewer than 2^52 stations")]
+    /// The station of this index.
     pub fn new(options: &SimulationOptions, setup: &Setup, station_idx: usize, random: &mut Random) -> Self {
-        let turn = if station_idx == 0 {
-            UnitQuaternion::identity()
-        } else {
-            let azimuth = GOLDEN_ANGLE * station_idx as f64;
-            let tilt = options.tilt_deg.to_radians() * (0.85 + 0.15 * random.unit());
-            let spin = options.spin_deg.to_radians() * spread(station_idx) * (0.9 + 0.1 * random.unit());
-            so3::exp(Vec3::z() * spin)
-                * so3::exp(Vec3::y() * tilt * azimuth.sin())
-                * so3::exp(Vec3::x() * tilt * azimuth.cos())
-        };
-        let world_from_sensor_rotation = turn * setup.world_from_carrier_upright * setup.carrier_from_sensor.rotation;
+        let world_from_sensor_rotation = setup.orientation(options, station_idx, random);
         let side = random.signed_unit().signum();
         let offset_mm = (options.section_offset_or_default_mm()
             * (1.0 + options.section_offset_spread * random.signed_unit()))
         .min(options.radius_mm);
-        let range_sign = if options.z_towards_sensor { -1.0 } else { 1.0 };
         let ball_in_sensor = Vec3::new(
             0.2 * options.radius_mm * random.signed_unit(),
             side * offset_mm,
-            range_sign * (STANDOFF_MM + options.radius_mm * (1.0 + 0.3 * random.signed_unit())),
+            options.range_sign() * (STANDOFF_MM + options.radius_mm * (1.0 + 0.3 * random.signed_unit())),
         );
-        let origin_in_world = setup.ball_in_world - world_from_sensor_rotation * ball_in_sensor;
+        let origin_in_world = setup.target_in_world - world_from_sensor_rotation * ball_in_sensor;
         let off_normal = options.travel_off_normal_deg.to_radians();
         // Off towards x and z alike, the same at every station: the robot's Y is not quite the laser's normal.
         let aside = Vec3::new(0.8, 0.0, 0.6);

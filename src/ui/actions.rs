@@ -4,7 +4,10 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 
 use crate::app::{Document, Workbench};
 use crate::session::{Capture, Reading};
-use crate::text::{capture as capture_words, document as document_words, import as import_words, shell as words};
+use crate::text::{
+    capture as capture_words, document as document_words, import as import_words, shell as words,
+    verify as verify_words,
+};
 
 use super::rail::Step;
 
@@ -23,6 +26,8 @@ pub enum Action {
     Paste,
     /// Asks for a session whose stations are to be added to the open one.
     AddSession,
+    /// Asks for a session whose target the open one's calibration is to be verified on.
+    AddFurther,
     /// Asks for the folder that a profiler's software saves profiles into.
     ChooseWatchedFolder,
     /// Starts the simulated cell and connects to it.
@@ -88,6 +93,7 @@ impl Action {
             | Self::ImportFolder
             | Self::Paste
             | Self::AddSession
+            | Self::AddFurther
             | Self::ChooseWatchedFolder
             | Self::Practise
             | Self::EndPractice
@@ -108,6 +114,7 @@ impl Action {
             Self::ImportFolder => import_words::IMPORT_FOLDER.to_owned(),
             Self::Paste => import_words::PASTE.to_owned(),
             Self::AddSession => import_words::ADD_SESSION.to_owned(),
+            Self::AddFurther => verify_words::ADD_TARGET.to_owned(),
             Self::ChooseWatchedFolder => capture_words::FOLDER_TITLE.to_owned(),
             Self::Practise => capture_words::PRACTISE.to_owned(),
             Self::EndPractice => capture_words::END_PRACTICE.to_owned(),
@@ -140,7 +147,7 @@ impl Action {
     pub fn refusal(self, workbench: &Workbench) -> Option<&'static str> {
         let document = workbench.document();
         match self {
-            Self::Save | Self::SaveAs | Self::Close | Self::History | Self::AddSession => {
+            Self::Save | Self::SaveAs | Self::Close | Self::History | Self::AddSession | Self::AddFurther => {
                 document.is_none().then_some(words::NO_DOCUMENT)
             }
             Self::ExportPoses | Self::ExportProfiles => export_refusal(self, document),

@@ -6,7 +6,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::app::jobs::Wake;
-use crate::text::{capture as capture_words, import as import_words, shell as words};
+use crate::text::{capture as capture_words, import as import_words, shell as words, verify as verify_words};
 
 /// Nobody cancels a dialog faster than this; so quick a "nothing chosen" means that no dialog came up.
 const FASTEST_CANCEL: Duration = Duration::from_millis(500);
@@ -24,6 +24,8 @@ pub enum Purpose {
     ImportFolder,
     /// Choosing a session whose stations are added to the open one.
     AddSession,
+    /// Choosing a session whose target is added to the open one.
+    AddFurther,
     /// Choosing a file to write the poses to.
     ExportPoses,
     /// Choosing a folder to write the profiles to.
@@ -45,6 +47,7 @@ impl Purpose {
             Self::Save => words::SAVE_AS_TITLE,
             Self::ImportFiles | Self::ImportFolder => import_words::IMPORT_PATH_TITLE,
             Self::AddSession => import_words::ADD_SESSION_PATH_TITLE,
+            Self::AddFurther => verify_words::ADD_TARGET_TITLE,
             Self::ExportPoses => import_words::EXPORT_POSES_TITLE,
             Self::ExportProfiles => import_words::EXPORT_PROFILES_TITLE,
             Self::WatchedFolder => capture_words::FOLDER_TITLE,
@@ -58,6 +61,7 @@ impl Purpose {
             Self::Open => words::OPEN,
             Self::Save => words::SAVE,
             Self::ImportFiles | Self::ImportFolder | Self::AddSession => import_words::IMPORT_BUTTON,
+            Self::AddFurther => verify_words::ADD_TARGET_BUTTON,
             Self::ExportPoses | Self::ExportProfiles => import_words::EXPORT_BUTTON,
             Self::WatchedFolder => capture_words::FOLDER_BUTTON,
         }
@@ -141,7 +145,7 @@ fn ask(purpose: Purpose, suggested_name: &str) -> Answer {
         Purpose::Open => all(sessions(dialog)).pick_file().map(one),
         Purpose::Save => sessions(dialog).set_file_name(suggested_name).save_file().map(one),
         Purpose::ImportFiles => all(dialog.add_filter(import_words::IMPORT_FILTER, &IMPORT_ENDINGS)).pick_files(),
-        Purpose::AddSession => sessions(dialog).pick_file().map(one),
+        Purpose::AddSession | Purpose::AddFurther => sessions(dialog).pick_file().map(one),
         Purpose::ExportPoses => {
             let dialog = dialog.add_filter(import_words::CSV_FILTER, &["csv"]);
             dialog.set_file_name(suggested_name).save_file().map(one)

@@ -151,6 +151,16 @@ fn capture_mark(cell: &CellView) -> Mark {
     }
 }
 
+/// Whether data that the answer was not computed from speak for it or against it; nothing where there are none.
+fn verify_mark(workbench: &Workbench) -> Mark {
+    let found = workbench.verification().last().filter(|found| workbench.is_current(found.revision));
+    match found.and_then(|found| found.value.is_borne_out()) {
+        Some(true) => Mark::Fine("✔".to_owned()),
+        Some(false) => Mark::Look("!".to_owned()),
+        None => Mark::None,
+    }
+}
+
 fn mark(workbench: &Workbench, selection: &Selection, num_pose_remarks: usize, step: Step) -> Mark {
     if step == Step::Capture {
         return capture_mark(workbench.cell());
@@ -168,7 +178,8 @@ fn mark(workbench: &Workbench, selection: &Selection, num_pose_remarks: usize, s
     };
     match step {
         Step::Session => Mark::Fine("✔".to_owned()),
-        Step::Capture | Step::Verify => Mark::None,
+        Step::Capture => Mark::None,
+        Step::Verify => verify_mark(workbench),
         // Nothing is no reason for a tick, nor for a cross.
         Step::Arcs | Step::Poses | Step::Compare | Step::Diagnosis if document.session.stations.is_empty() => {
             Mark::None

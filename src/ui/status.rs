@@ -92,11 +92,12 @@ fn running(workbench: &Workbench) -> Option<(Progress, String, Command)> {
 /// From right to left, as the layout runs.
 fn progress_or_summary(ui: &mut Ui, workbench: &Workbench, commands: &mut Vec<Command>) {
     if let Some((progress, words, cancel)) = running(workbench) {
+        ui.label(theme::dim(ui, words));
+        ui.add(ProgressBar::new(progress.fraction()).desired_width(BAR_WIDTH).desired_height(6.0));
+        // Never in the corner: that is where the robot is stopped.
         if ui.button(words::CANCEL).clicked() {
             commands.push(cancel);
         }
-        ui.add(ProgressBar::new(progress.fraction()).desired_width(BAR_WIDTH).desired_height(6.0));
-        ui.label(theme::dim(ui, words));
     } else if workbench.is_loading() {
         ui.label(theme::dim(ui, words::READING_FILE));
     }
@@ -113,6 +114,9 @@ fn progress_or_summary(ui: &mut Ui, workbench: &Workbench, commands: &mut Vec<Co
         let captures = || stations().flat_map(|station| &station.captures);
         let num_points = captures().filter(|capture| matches!(capture.reading, Reading::Point(_))).count();
         let captures = captures_text(captures().count() - num_points, num_points);
+        if document.session.stations.is_empty() {
+            return;
+        }
         let summary = words::summary(stations().count(), &captures, results.elapsed.as_millis());
         ui.label(theme::dim(ui, summary));
     } else {

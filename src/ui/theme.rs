@@ -120,12 +120,11 @@ pub fn palette(ui: &egui::Ui) -> &'static Palette {
 #[must_use]
 pub const fn method_color(method: Method) -> Color32 {
     match method {
-        Method::BallFixedPoint => Color32::from_rgb(0x00, 0x72, 0xb2),
+        Method::BallFixedPoint | Method::FixedPoint => Color32::from_rgb(0x00, 0x72, 0xb2),
         Method::BallMaxArcStep => Color32::from_rgb(0x7f, 0x7f, 0x7f),
         Method::BallMaxArc => Color32::from_rgb(0xd9, 0x7a, 0x00),
         Method::BallBundle | Method::PlateBundle => Color32::from_rgb(0x00, 0x9e, 0x73),
         Method::PlateOrthogonal => Color32::from_rgb(0xcc, 0x79, 0xa7),
-        Method::FixedPoint => Color32::from_rgb(0x00, 0x72, 0xb2),
     }
 }
 

@@ -6,7 +6,9 @@ mod exports;
 mod files;
 mod imports;
 mod keeping;
+pub mod scans;
 mod studies;
+mod verifying;
 
 use std::collections::VecDeque;
 use std::path::PathBuf;
@@ -16,6 +18,7 @@ use crate::calibrate::validation::Bootstrap;
 use crate::diagnose::{Diagnosis, ReadingFit};
 use crate::plan::{Limits, Plan, PlanRefusal};
 use crate::session::edit::CellValue;
+use crate::verify::{Calibration, Verification};
 use crate::watch::Cancelled;
 
 use super::jobs::{JobOutcome, Slot, Wake};
@@ -28,7 +31,9 @@ use self::exports::Exported;
 use self::files::{Loaded, Look, Save, SaveOutcome};
 pub use self::imports::ImportDraft;
 use self::imports::Imports;
+use self::scans::Scans;
 pub use self::studies::Results;
+use self::verifying::Added;
 
 /// How serious a notice is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,8 +103,13 @@ pub struct Workbench {
     plan: Study<Result<Plan, PlanRefusal>>,
     readings: Study<Vec<ReadingFit>>,
     bootstrap: Study<Bootstrap>,
+    verification: Study<Verification>,
+    /// Calibrations from elsewhere, judged along with the session's own.
+    given: Vec<Calibration>,
+    adding: Slot<Added>,
     imports: Imports,
     exporting: Slot<Exported>,
+    scans: Scans,
     cell: LiveCell,
 }
 
@@ -130,8 +140,12 @@ impl Workbench {
             plan: Study::default(),
             readings: Study::default(),
             bootstrap: Study::default(),
+            verification: Study::default(),
+            given: Vec::new(),
+            adding: Slot::default(),
             imports: Imports::default(),
             exporting: Slot::default(),
+            scans: Scans::default(),
             cell: LiveCell::default(),
         }
     }
@@ -237,8 +251,11 @@ impl Workbench {
             || self.plan.is_running()
             || self.readings.is_running()
             || self.bootstrap.is_running()
+            || self.verification.is_running()
+            || self.adding.is_running()
             || self.imports.is_busy()
             || self.exporting.is_running()
+            || self.scans.is_busy()
     }
 
     /// Carries out one command.
@@ -285,6 +302,10 @@ impl Workbench {
                 self.plan.clear();
                 self.start_planning();
             }
+            Command::AddFurther(path) => self.start_adding_further(path),
+            Command::GiveCalibration(calibration) => self.give_calibration(*calibration),
+            Command::WithdrawCalibration(name) => self.withdraw_calibration(&name),
+            Command::Scan(command) => self.command_scans(*command),
             Command::Cell(command) => self.command_cell(*command),
             Command::DismissNotice(id) => self.notices.retain(|notice| notice.id != id),
         }
@@ -320,6 +341,7 @@ impl Workbench {
             ("planning", self.plan.poll()),
             ("trying other conventions", self.readings.poll()),
             ("the bootstrap", self.bootstrap.poll()),
+            ("verifying", self.verification.poll()),
         ] {
             let Some(ended) = ended else { continue };
             changed = true;
@@ -327,8 +349,12 @@ impl Workbench {
                 self.notify_broken(what, &ended);
             }
         }
+        if let Some(outcome) = self.adding.poll() {
+            changed = true;
+            self.take_added(outcome);
+        }
         let imported = self.poll_imports();
-        let exported = self.poll_exports();
+        let exported = self.poll_exports() | self.poll_scans();
         // Last, as a run goes on once the results of its last station are there.
         let cell = self.poll_cell();
         changed || imported || exported || cell

@@ -44,11 +44,14 @@ impl Results {
 
 impl Workbench {
     pub(super) fn forget_results(&mut self) {
+        self.forget_scans();
         self.results = None;
         self.diagnosis.clear();
         self.plan.clear();
         self.readings.clear();
         self.bootstrap.clear();
+        self.verification.clear();
+        self.given.clear();
         self.plan_limits = Limits::default();
     }
 
@@ -57,6 +60,7 @@ impl Workbench {
         self.results = Some(Arc::new(results));
         self.start_diagnosing();
         self.start_planning();
+        self.start_verifying();
     }
 
     pub(super) fn start_solving(&mut self) {
@@ -65,6 +69,7 @@ impl Workbench {
         self.plan.cancel();
         self.readings.cancel();
         self.bootstrap.cancel();
+        self.verification.cancel();
         let Some(document) = &self.document else { return };
         let session = Arc::clone(&document.session);
         let revision = document.revision;

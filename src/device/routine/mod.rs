@@ -16,7 +16,7 @@ use crate::fit::ArcOptions;
 use crate::geometry::{Base, Flange, Profile, Transform};
 use crate::watch::Wake;
 
-use super::error::DeviceError;
+use super::error::{DeviceError, system_words};
 use super::safety::{Arming, MotionRefusal};
 use super::search::{SearchEnd, SearchReport, SearchSettings};
 use super::settle::SettleSettings;
@@ -148,8 +148,11 @@ impl Routine {
         };
         let spawned = thread::Builder::new().name("routine".to_owned()).spawn(move || runner.run());
         if let Err(error) = spawned {
-            let error =
-                DeviceError::System { device: "Cell", what: "starting a thread".to_owned(), reason: error.to_string() };
+            let error = DeviceError::System {
+                device: "Cell",
+                what: "starting a thread".to_owned(),
+                reason: system_words(&error),
+            };
             sender.send(RoutineEvent::Ended(RoutineEnd::Failed { error, robot_stopped: None })).ok();
         }
         Self { control, events, is_over: false }

@@ -13,7 +13,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant, SystemTime};
 
 use crate::device::driver::{ProfileReading, SensorDriver};
-use crate::device::error::DeviceError;
+use crate::device::error::{DeviceError, system_words};
 use crate::device::setup::SensorSetup;
 use crate::geometry::Profile;
 use crate::sheet::{natural_key, profile, text};
@@ -168,7 +168,7 @@ impl FolderDriver {
         DeviceError::NotConnected {
             device: DEVICE,
             address: self.folder.display().to_string(),
-            reason: error.to_string(),
+            reason: system_words(error),
             remedy: "check that the folder exists and may be read, and that its drive is connected",
         }
     }

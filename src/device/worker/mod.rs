@@ -16,7 +16,7 @@ use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::error::DeviceError;
+use super::error::{DeviceError, system_words};
 use crate::watch::Wake;
 
 use post::{Next, Post};
@@ -102,8 +102,11 @@ fn start<D: Duty>(duty: D, connect: Connect<D::Driver>, deadlines: Deadlines, wa
     let worker = Worker { duty, connect, post: Arc::clone(&post) };
     let spawned = thread::Builder::new().name(D::DEVICE.to_lowercase()).spawn(move || worker.run());
     if let Err(error) = spawned {
-        let error =
-            DeviceError::System { device: D::DEVICE, what: "starting a thread".to_owned(), reason: error.to_string() };
+        let error = DeviceError::System {
+            device: D::DEVICE,
+            what: "starting a thread".to_owned(),
+            reason: system_words(&error),
+        };
         post.change_link(|link| link.on_failed(error, Instant::now()));
     }
     Hold(post)

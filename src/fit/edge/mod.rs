@@ -1,10 +1,21 @@
 //! The edge of a plate in a real profile: where its surface ends, breaks or turns, and a reason where that is not seen.
 
+mod corner;
+mod end;
+mod pieces;
+mod points;
+mod sighting;
+mod tip;
+
 use nalgebra::Matrix2;
 
 use crate::geometry::Profile;
 
 use super::{EdgeRefusal, PointClass};
+
+use pieces::Piece;
+use points::Points;
+use sighting::Seen;
 
 /// What the surface does at the place looked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -22,6 +33,15 @@ pub enum Feature {
 impl Feature {
     /// All features, in the order in which they are tried and shown.
     pub const ALL: [Self; 4] = [Self::Corner, Self::Step, Self::Edge, Self::Tip];
+}
+
+/// Something that a profile shows, and where.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sighting {
+    /// What it is.
+    pub feature: Feature,
+    /// Where across the line, mm.
+    pub x_mm: f64,
 }
 
 /// What is known before looking at a profile.
@@ -53,7 +73,7 @@ pub struct EdgeFit {
     pub point_mm: [f64; 2],
     /// Its covariance, mm². For a free edge the pitch of the points counts as well.
     pub covariance: Matrix2<f64>,
-    /// The flanks that it was found from; an edge has one, a corner two.
+    /// The flanks that it was found from: an edge and a step have one, a corner and a pointed tip two, a rounded tip none.
     pub flanks: Vec<Flank>,
     /// Noise of a point across its flank, mm.
     pub point_std_mm: f64,
@@ -69,7 +89,14 @@ impl EdgeFit {
     }
 }
 
-/// Finds where the laser line crosses an edge.
+/// Finds where the laser line crosses an edge, or a tip.
+///
+/// Straight pieces are searched for and fitted one after the other; where two of them meet is a corner, where one ends an edge
+/// or, with another surface behind it, a step. What is there only because something else is does not count: the end of the
+/// table, the lower end of a plate's side. What is left has to be one thing.
+///
+/// x may fall as well as rise. z may run either way where the sensor's origin is in its head, so that all ranges have one
+/// sign; else it is taken to grow away from the sensor. Which side of a step is the plate depends on that.
 ///
 /// # Frame and units
 /// Laser plane of the sensor, mm.
@@ -77,6 +104,59 @@ impl EdgeFit {
 /// # Errors
 /// [`EdgeRefusal`], with the reason in words.
 pub fn extract_edge(profile: &Profile, options: &EdgeOptions) -> Result<EdgeFit, EdgeRefusal> {
-    let found = profile.valid_points().count();
-    Err(EdgeRefusal::NoFeature { feature: options.feature, num_points: found })
+    let points = Points::of(profile, options);
+    let needed = if options.feature == Some(Feature::Tip) { tip::MIN_TIP_POINTS } else { pieces::MIN_FLANK_POINTS };
+    if points.len() < needed {
+        return Err(EdgeRefusal::TooFewPoints { found: points.len(), needed });
+    }
+    let pieces = pieces::find(&points);
+    if options.feature == Some(Feature::Tip) {
+        return tip::find(&points, &pieces, options);
+    }
+    let (seen, flattest_rad) = sighting::all(&points, &pieces);
+    let of_plate: Vec<Seen> =
+        seen.into_iter().filter(|seen| !seen.is_of(|piece| sighting::is_narrow(&points, &pieces[piece]))).collect();
+    let wanted: Vec<Seen> = of_plate.iter().copied().filter(|seen| seen.answers(options.feature)).collect();
+    match wanted.as_slice() {
+        [found] => fit(&points, &pieces, found, options)
+            .ok_or(EdgeRefusal::NoFeature { feature: options.feature, num_points: points.len() }),
+        [] => nothing(&points, &pieces, &of_plate, flattest_rad, options),
+        several => Err(EdgeRefusal::Ambiguous { seen: several.iter().map(Seen::sighting).collect() }),
+    }
+}
+
+fn fit(points: &Points, pieces: &[Piece], seen: &Seen, options: &EdgeOptions) -> Option<EdgeFit> {
+    match *seen {
+        Seen::Corner { before, .. } => corner::fit(points, &pieces[before], &pieces[before + 1], options),
+        Seen::End { piece, end, far, .. } => {
+            let far_place = far.map(|far| pieces[far].end(end.other()));
+            end::fit(points, &pieces[piece], end, far_place, seen.feature(), options)
+        }
+    }
+}
+
+/// What else there is where nothing of a plate was found: a tip, or a reason.
+fn nothing(
+    points: &Points,
+    pieces: &[Piece],
+    seen: &[Seen],
+    flattest_rad: Option<f64>,
+    options: &EdgeOptions,
+) -> Result<EdgeFit, EdgeRefusal> {
+    let num_points = points.len();
+    if options.feature.is_none()
+        && let found @ (Ok(_) | Err(EdgeRefusal::Ambiguous { .. })) = tip::find(points, pieces, options)
+    {
+        return found;
+    }
+    Err(match (options.feature, flattest_rad) {
+        (Some(wanted), _) if !seen.is_empty() => {
+            EdgeRefusal::OtherFeature { wanted, seen: seen.iter().map(Seen::sighting).collect() }
+        }
+        _ if pieces.is_empty() => EdgeRefusal::NoFlank { num_points, needed: pieces::MIN_FLANK_POINTS },
+        (None | Some(Feature::Corner), Some(angle_rad)) => {
+            EdgeRefusal::TooFlat { found_deg: angle_rad.to_degrees(), needed_deg: corner::MIN_CORNER_DEG }
+        }
+        (feature, _) => EdgeRefusal::NoFeature { feature, num_points },
+    })
 }

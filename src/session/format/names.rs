@@ -1,5 +1,6 @@
 //! The words of the session format: fields at every level, and the values that are words.
 
+use crate::calibrate::Mount;
 use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
 use crate::session::model::Target;
 
@@ -28,33 +29,66 @@ pub(super) fn word_of<T: Copy + PartialEq>(choices: &[(&'static str, T)], value:
 }
 
 const SESSION: &[&str] =
-    &["format", "version", "name", "notes", "robot", "sensor", "target", "mount", "stations", "published"];
+    &["format", "version", "name", "notes", "robot", "sensor", "target", "mount", "stations", "further", "published"];
+pub(super) const FURTHER: &[&str] = &["name", "target", "stations"];
 pub(super) const ROBOT: &[&str] =
     &["model", "pose_convention", "pose_notation", "position_std_mm", "orientation_std_deg"];
 pub(super) const NOTATION: &[&str] = &["orientation", "angle_unit", "length_unit", "flange_from_tcp", "inverse"];
-pub(super) const SENSOR: &[&str] = &["model", "profile_std_mm", "reference_distance_mm"];
+pub(super) const SENSOR: &[&str] = &["model", "profile_std_mm", "reference_distance_mm", "rough_flange_from_sensor"];
 pub(super) const STATION: &[&str] = &["label", "enabled", "side", "edge", "captures"];
 pub(super) const CAPTURE: &[&str] = &["base_from_flange", "profile", "point_mm", "step"];
 pub(super) const PROFILE: &[&str] = &["x_mm", "z_mm"];
 pub(super) const POSE: &[&str] = &["translation_mm", "quaternion_wxyz", "euler_deg", "convention", "written"];
 pub(super) const WRITTEN: &[&str] = &["euler_deg", "convention"];
 pub(super) const PUBLISHED: &[&str] = &["ball_in_base_mm", "error_from_first_mm", "caption"];
-pub(super) const TRUTH: &[&str] = &["flange_from_sensor", "base_from_sensor", "ball_in_base_mm", "ball_in_flange_mm"];
+
+/// A name with the sensor on the flange, and the same with a fixed sensor: the frames are others there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ByMount {
+    pub on_flange: &'static str,
+    pub fixed: &'static str,
+}
+
+impl ByMount {
+    pub const fn name(self, mount: Mount) -> &'static str {
+        match mount {
+            Mount::OnFlange => self.on_flange,
+            Mount::Fixed => self.fixed,
+        }
+    }
+}
+
+pub(super) const TRUE_SENSOR: ByMount = ByMount { on_flange: "flange_from_sensor", fixed: "base_from_sensor" };
+pub(super) const TRUE_BALL: ByMount = ByMount { on_flange: "ball_in_base_mm", fixed: "ball_in_flange_mm" };
+pub(super) const TRUE_POINT: ByMount = ByMount { on_flange: "point_in_base_mm", fixed: "point_in_flange_mm" };
+pub(super) const TRUE_PLATE: ByMount = ByMount { on_flange: "base_from_plate", fixed: "flange_from_plate" };
 
 /// Fields of the top level that are ours for this target; any others are kept as they are.
 pub(super) fn session(target: &Target) -> Vec<&'static str> {
     let of_target: &[&str] = match target {
-        Target::Ball { .. } => &["truth"],
         Target::Rgbd { .. } => &["sequence"],
-        Target::RightAnglePlate | Target::Point | Target::Workpiece => &[],
+        Target::Ball { .. } | Target::RightAnglePlate | Target::Point | Target::Workpiece => &["truth"],
     };
     [SESSION, of_target].concat()
 }
 
-/// Fields of the target itself.
+/// Fields of the target itself, with what is known of it.
 pub(super) const fn target(target: &Target) -> &'static [&'static str] {
     match target {
         Target::Ball { .. } => &["kind", "radius_mm", "radius_std_mm"],
-        _ => &["kind"],
+        Target::Point => &["kind", "touched_in_base_mm"],
+        Target::Workpiece => &["kind", "angle_deg", "pitch_mm", "height_mm", "diameter_mm"],
+        Target::RightAnglePlate | Target::Rgbd { .. } => &["kind"],
     }
+}
+
+/// Fields of the truth.
+pub(super) fn truth(target: &Target) -> Vec<&'static str> {
+    let of_target = match target {
+        Target::Ball { .. } => Some(TRUE_BALL),
+        Target::Point => Some(TRUE_POINT),
+        Target::RightAnglePlate => Some(TRUE_PLATE),
+        Target::Workpiece | Target::Rgbd { .. } => None,
+    };
+    [Some(TRUE_SENSOR), of_target].into_iter().flatten().flat_map(|names| [names.on_flange, names.fixed]).collect()
 }

@@ -8,16 +8,16 @@ use nalgebra::{Quaternion, UnitQuaternion};
 
 use crate::calibrate::{Mount, Side, SideChoice};
 use crate::geometry::profile::ProfileError;
-use crate::geometry::{Frame, PoseConvention, PoseNotation, Profile, Transform};
+use crate::geometry::{Base, Flange, Frame, PoseConvention, PoseNotation, Profile, Transform, Vec3};
 use crate::session::check::Finding;
 use crate::session::limits::{self, Quantity};
 use crate::session::model::{
-    Capture, Edge, Known, Published, Reading, Robot, Sensor, Session, Station, Target, Truth, UnknownFields,
-    WrittenAngles,
+    Capture, Edge, FurtherTarget, Known, Published, Reading, Robot, Sensor, Session, Station, Target, Truth,
+    UnknownFields, WrittenAngles,
 };
 
 use super::cursor::{Cursor, Object, Refusal, listed};
-use super::names;
+use super::names::{self, ByMount};
 
 /// What reading takes along besides the session: what it had to mend.
 #[derive(Debug, Default)]
@@ -52,6 +52,8 @@ const KINDS: &[(&str, Kind)] = &[
     (names::WORKPIECE, Kind::Workpiece),
     (names::RGBD, Kind::Rgbd),
 ];
+/// A sequence is a session's own target only.
+const KINDS_WITH_STATIONS: &[(&str, Kind)] = KINDS.split_at(4).0;
 
 #[derive(Clone, Copy)]
 enum Kind {
@@ -64,26 +66,29 @@ enum Kind {
 
 /// The session that the tree's top level describes.
 pub(super) fn session(root: &Object<'_>, mended: &mut Mended) -> Result<Session, Refusal> {
-    let (target, unknown) = target(root)?;
+    let mut of_target = UnknownFields::new();
+    let (target, known) = target(root, KINDS, &mut of_target)?;
+    let mut unknown = root.unknown(&names::session(&target));
+    unknown.extend(of_target);
     let stations = stations(root, &target, mended)?;
-    // The truth of other targets is not ours to read: it is among the unknown fields.
+    // The truth of a sequence is not ours to read: it is among the unknown fields.
     let truth = match root.optional("truth") {
-        Some(cursor) if matches!(target, Target::Ball { .. }) => Some(truth(&cursor, mended)?),
+        Some(cursor) if !matches!(target, Target::Rgbd { .. }) => Some(truth(&cursor, &target, mended)?),
         _ => None,
     };
     Ok(Session {
         name: root.text_or_empty("name")?,
         notes: root.text_or_empty("notes")?,
         robot: root.optional("robot").map_or_else(|| Ok(Robot::default()), |cursor| robot(&cursor, mended))?,
-        sensor: root.optional("sensor").map_or_else(|| Ok(Sensor::default()), |cursor| sensor(&cursor))?,
+        sensor: root.optional("sensor").map_or_else(|| Ok(Sensor::default()), |cursor| sensor(&cursor, mended))?,
         mount: root.optional("mount").map_or(Ok(Mount::default()), |cursor| {
             cursor.one_of(&[(names::ON_FLANGE, Mount::OnFlange), (names::FIXED, Mount::Fixed)])
         })?,
         published: root.optional("published").map(|cursor| published(&cursor, stations.len())).transpose()?,
         target,
-        known: Known::default(),
+        known,
         stations,
-        further: Vec::new(),
+        further: root.optional("further").map_or_else(|| Ok(Vec::new()), |cursor| further(&cursor, mended))?,
         truth,
         unknown,
     })
@@ -136,14 +141,20 @@ fn notation(robot: &Object<'_>, unknown: &mut UnknownFields, mended: &mut Mended
     })
 }
 
-fn sensor(cursor: &Cursor<'_>) -> Result<Sensor, Refusal> {
+fn sensor(cursor: &Cursor<'_>, mended: &mut Mended) -> Result<Sensor, Refusal> {
     let object = cursor.object("an object that describes the sensor")?;
+    let mut unknown = object.unknown(names::SENSOR);
+    let rough_flange_from_sensor = match object.optional("rough_flange_from_sensor") {
+        // What a rough mounting was written in is of no use to anyone.
+        Some(_) => Some(pose(&object, "rough_flange_from_sensor", &mut unknown, mended)?.0),
+        None => None,
+    };
     Ok(Sensor {
         model: object.text_or_empty("model")?,
         profile_std_mm: object.optional_number("profile_std_mm", &limits::LENGTH_STD_MM)?,
         reference_distance_mm: object.optional_number("reference_distance_mm", &limits::REFERENCE_DISTANCE_MM)?,
-        rough_flange_from_sensor: None,
-        unknown: object.unknown(names::SENSOR),
+        rough_flange_from_sensor,
+        unknown,
     })
 }
 
@@ -156,11 +167,17 @@ fn known_conventions() -> String {
     listed(PoseConvention::all().map(|convention| convention.id))
 }
 
-fn target(root: &Object<'_>) -> Result<(Target, UnknownFields), Refusal> {
+/// The field `target` with what is known of it; its unknown fields go into `unknown`.
+fn target(
+    parent: &Object<'_>,
+    kinds: &[(&str, Kind)],
+    unknown: &mut UnknownFields,
+) -> Result<(Target, Known), Refusal> {
     let expected = "an object like {\"kind\": \"ball\", \"radius_mm\": 15}";
-    let cursor = root.required("target", expected)?;
+    let cursor = parent.required("target", expected)?;
     let object = cursor.object(expected)?;
-    let kind = object.required("kind", &listed(KINDS.iter().map(|(word, _)| *word)))?.one_of(KINDS)?;
+    let kind = object.required("kind", &listed(kinds.iter().map(|(word, _)| *word)))?.one_of(kinds)?;
+    let mut known = Known::default();
     let target = match kind {
         Kind::Ball => {
             let radius = object.required("radius_mm", &limits::BALL_RADIUS_MM.to_string())?;
@@ -170,13 +187,60 @@ fn target(root: &Object<'_>) -> Result<(Target, UnknownFields), Refusal> {
             }
         }
         Kind::RightAnglePlate => Target::RightAnglePlate,
-        Kind::Point => Target::Point,
-        Kind::Workpiece => Target::Workpiece,
-        Kind::Rgbd => Target::Rgbd { sequence: sequence(root)? },
+        Kind::Point => {
+            known.point_in_base_mm =
+                object.optional("touched_in_base_mm").map(|cursor| cursor.vec3(&limits::POSITION_MM)).transpose()?;
+            Target::Point
+        }
+        Kind::Workpiece => {
+            known.angle_deg = object.optional_number("angle_deg", &limits::PLANE_ANGLE_DEG)?;
+            known.pitch_mm = object.optional_number("pitch_mm", &limits::PART_SIZE_MM)?;
+            known.height_mm = object.optional_number("height_mm", &limits::PART_SIZE_MM)?;
+            known.diameter_mm = object.optional_number("diameter_mm", &limits::PART_SIZE_MM)?;
+            Target::Workpiece
+        }
+        Kind::Rgbd => Target::Rgbd { sequence: sequence(parent)? },
     };
-    let mut unknown = root.unknown(&names::session(&target));
-    object.keep_unknown_in(&mut unknown, "target", names::target(&target));
-    Ok((target, unknown))
+    object.keep_unknown_in(unknown, "target", names::target(&target));
+    Ok((target, known))
+}
+
+fn further(cursor: &Cursor<'_>, mended: &mut Mended) -> Result<Vec<FurtherTarget>, Refusal> {
+    let elements = cursor.elements("a list of further targets")?;
+    let mut idx_of_name: HashMap<String, usize> = HashMap::new();
+    let mut all = Vec::with_capacity(elements.len());
+    for (idx, element) in elements.iter().enumerate() {
+        let one = further_target(element, mended)?;
+        if let Some(first_idx) = idx_of_name.insert(one.name.clone(), idx) {
+            return Err(taken_twice(element, "name", &one.name, cursor, first_idx, "further target"));
+        }
+        all.push(one);
+    }
+    Ok(all)
+}
+
+fn further_target(cursor: &Cursor<'_>, mended: &mut Mended) -> Result<FurtherTarget, Refusal> {
+    let object = cursor.object("an object with name, target and stations")?;
+    let mut unknown = object.unknown(names::FURTHER);
+    let (target, known) = target(&object, KINDS_WITH_STATIONS, &mut unknown)?;
+    let name = one_line(&object.required("name", ONE_LINE)?)?;
+    Ok(FurtherTarget { name, stations: stations(&object, &target, mended)?, target, known, unknown })
+}
+
+/// A name or label of `element` that an earlier element of the list has as well.
+fn taken_twice(
+    element: &Cursor<'_>,
+    field: &str,
+    text: &str,
+    list: &Cursor<'_>,
+    first_idx: usize,
+    of_what: &str,
+) -> Refusal {
+    Refusal {
+        path: format!("{}.{field}", element.path()),
+        found: format!("{}, which {}[{first_idx}] has too", super::tree::quoted(text), list.path()),
+        expected: format!("a {field} of its own for each {of_what}"),
+    }
 }
 
 fn sequence(root: &Object<'_>) -> Result<String, Refusal> {
@@ -206,11 +270,7 @@ fn stations(root: &Object<'_>, target: &Target, mended: &mut Mended) -> Result<V
     for (station_idx, element) in elements.iter().enumerate() {
         let station = station(element, station_idx, target, mended)?;
         if let Some(first_idx) = station_of_label.insert(station.label.clone(), station_idx) {
-            return Err(Refusal {
-                path: format!("{}.label", element.path()),
-                found: format!("{}, which stations[{first_idx}] has too", super::tree::quoted(&station.label)),
-                expected: "a label of its own for each station".to_owned(),
-            });
+            return Err(taken_twice(element, "label", &station.label, &cursor, first_idx, "station"));
         }
         stations.push(station);
     }
@@ -249,15 +309,18 @@ fn station(cursor: &Cursor<'_>, station_idx: usize, target: &Target, mended: &mu
 }
 
 fn label(station: &Object<'_>, station_idx: usize) -> Result<String, Refusal> {
-    let expected = "text on one line that is not empty";
-    let Some(cursor) = station.optional("label") else {
-        return Ok((station_idx + 1).to_string());
-    };
-    let label = cursor.text(expected)?;
-    if label.trim().is_empty() || label.chars().any(char::is_control) {
-        return Err(cursor.refuse(expected));
+    station.optional("label").map_or_else(|| Ok((station_idx + 1).to_string()), |cursor| one_line(&cursor))
+}
+
+const ONE_LINE: &str = "text on one line that is not empty";
+
+/// A name or label.
+fn one_line(cursor: &Cursor<'_>) -> Result<String, Refusal> {
+    let text = cursor.text(ONE_LINE)?;
+    if text.trim().is_empty() || text.chars().any(char::is_control) {
+        return Err(cursor.refuse(ONE_LINE));
     }
-    Ok(label.to_owned())
+    Ok(text.to_owned())
 }
 
 fn capture(cursor: &Cursor<'_>, mended: &mut Mended) -> Result<Capture, Refusal> {
@@ -401,21 +464,26 @@ fn published(cursor: &Cursor<'_>, num_stations: usize) -> Result<Published, Refu
 }
 
 /// The truth; with a fixed sensor its fields are named after the frames that they are in, and either name is read.
-fn truth(cursor: &Cursor<'_>, mended: &mut Mended) -> Result<Truth, Refusal> {
+fn truth(cursor: &Cursor<'_>, target: &Target, mended: &mut Mended) -> Result<Truth, Refusal> {
     let object = cursor.object("an object with the true calibration")?;
-    let present = |fixed, on_flange| {
-        if object.optional(fixed).is_some() { fixed } else { on_flange }
+    let present = |names: ByMount| {
+        if object.optional(names.fixed).is_some() { names.fixed } else { names.on_flange }
     };
-    let pose_name = present("base_from_sensor", "flange_from_sensor");
-    let ball_name = present("ball_in_flange_mm", "ball_in_base_mm");
-    let mut unknown = object.unknown(names::TRUTH);
+    let mut unknown = object.unknown(&names::truth(target));
     // What the truth was written in is of no use to anyone.
-    let (flange_from_sensor, _) = pose(&object, pose_name, &mut unknown, mended)?;
-    let ball = object.required(ball_name, "the ball's true centre, a list of 3 numbers in mm")?;
-    Ok(Truth {
-        flange_from_sensor,
-        target_in_base_mm: ball.vec3(&limits::POSITION_MM)?,
-        base_from_plate: None,
-        unknown,
-    })
+    let (flange_from_sensor, _) = pose(&object, present(names::TRUE_SENSOR), &mut unknown, mended)?;
+    let position = |names: ByMount, what: &str| {
+        let cursor = object.required(present(names), &format!("{what}, a list of 3 numbers in mm"))?;
+        cursor.vec3(&limits::POSITION_MM)
+    };
+    let (target_in_base_mm, base_from_plate) = match target {
+        Target::Ball { .. } => (position(names::TRUE_BALL, "the ball's true centre")?, None),
+        Target::Point => (position(names::TRUE_POINT, "the true point")?, None),
+        Target::RightAnglePlate => {
+            let (base_from_plate, _) = pose::<Base, Flange>(&object, present(names::TRUE_PLATE), &mut unknown, mended)?;
+            (base_from_plate.translation_mm(), Some(*base_from_plate.rigid()))
+        }
+        Target::Workpiece | Target::Rgbd { .. } => (Vec3::zeros(), None),
+    };
+    Ok(Truth { flange_from_sensor, target_in_base_mm, base_from_plate, unknown })
 }

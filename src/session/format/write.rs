@@ -5,12 +5,14 @@ use std::fmt::Write;
 use serde_json::Value;
 
 use crate::calibrate::{Mount, SideChoice};
-use crate::geometry::{Frame, PoseNotation, Profile, Transform, Vec3};
+use crate::geometry::{Base, Flange, Frame, PoseNotation, Profile, Rigid, Transform, Vec3};
 use crate::session::model::{
-    Capture, Edge, Published, Reading, Robot, Sensor, Session, Station, Target, Truth, UnknownFields, WrittenAngles,
+    Capture, Edge, FurtherTarget, Known, Published, Reading, Robot, Sensor, Session, Station, Target, Truth,
+    UnknownFields, WrittenAngles,
 };
 
-use super::{VERSION, names};
+use super::VERSION;
+use super::names::{self, ByMount};
 
 /// The session as the text of its file. Equal sessions give equal text.
 #[must_use]
@@ -30,7 +32,7 @@ pub fn to_json(session: &Session) -> String {
         sensor(&mut out, &session.sensor);
     }
     out.field("target");
-    target(&mut out, &session.target, nested(&session.unknown, "target"));
+    target(&mut out, &session.target, &session.known, nested(&session.unknown, "target"));
     if session.mount == Mount::Fixed {
         out.field("mount").text(names::FIXED);
     }
@@ -40,13 +42,17 @@ pub fn to_json(session: &Session) -> String {
         out.field("stations");
         out.list(Layout::Lines, &session.stations, station);
     }
+    if !session.further.is_empty() {
+        out.field("further");
+        out.list(Layout::Lines, &session.further, further);
+    }
     if let Some(printed) = &session.published {
         out.field("published");
         published(&mut out, printed);
     }
     if let Some(true_values) = &session.truth {
         out.field("truth");
-        truth(&mut out, true_values, session.mount);
+        truth(&mut out, true_values, &session.target, session.mount);
     }
     out.unknown(&session.unknown, &names::session(&session.target));
     out.close();
@@ -98,11 +104,15 @@ fn sensor(out: &mut Writer, sensor: &Sensor) {
     out.field("model").text(&sensor.model);
     out.optional_number("profile_std_mm", sensor.profile_std_mm);
     out.optional_number("reference_distance_mm", sensor.reference_distance_mm);
+    if let Some(rough) = &sensor.rough_flange_from_sensor {
+        out.field("rough_flange_from_sensor");
+        pose(out, rough, None, nested(&sensor.unknown, "rough_flange_from_sensor"));
+    }
     out.unknown(&sensor.unknown, names::SENSOR);
     out.close();
 }
 
-fn target(out: &mut Writer, target: &Target, unknown: Option<&UnknownFields>) {
+fn target(out: &mut Writer, target: &Target, known: &Known, unknown: Option<&UnknownFields>) {
     out.open(Layout::Line);
     out.field("kind").text(match target {
         Target::Ball { .. } => names::BALL,
@@ -111,11 +121,36 @@ fn target(out: &mut Writer, target: &Target, unknown: Option<&UnknownFields>) {
         Target::Workpiece => names::WORKPIECE,
         Target::Rgbd { .. } => names::RGBD,
     });
-    if let Target::Ball { radius_mm, radius_std_mm } = target {
-        out.optional_number("radius_mm", Some(*radius_mm));
-        out.optional_number("radius_std_mm", *radius_std_mm);
+    match target {
+        Target::Ball { radius_mm, radius_std_mm } => {
+            out.optional_number("radius_mm", Some(*radius_mm));
+            out.optional_number("radius_std_mm", *radius_std_mm);
+        }
+        Target::Point => {
+            if let Some(touched) = &known.point_in_base_mm {
+                out.field("touched_in_base_mm").vec3(touched);
+            }
+        }
+        Target::Workpiece => {
+            out.optional_number("angle_deg", known.angle_deg);
+            out.optional_number("pitch_mm", known.pitch_mm);
+            out.optional_number("height_mm", known.height_mm);
+            out.optional_number("diameter_mm", known.diameter_mm);
+        }
+        Target::RightAnglePlate | Target::Rgbd { .. } => {}
     }
     out.nested_unknown(unknown, names::target(target));
+    out.close();
+}
+
+fn further(out: &mut Writer, further: &FurtherTarget) {
+    out.open(Layout::Lines);
+    out.field("name").text(&further.name);
+    out.field("target");
+    target(out, &further.target, &further.known, nested(&further.unknown, "target"));
+    out.field("stations");
+    out.list(Layout::Lines, &further.stations, station);
+    out.unknown(&further.unknown, names::FURTHER);
     out.close();
 }
 
@@ -205,16 +240,29 @@ fn published(out: &mut Writer, published: &Published) {
     out.close();
 }
 
-fn truth(out: &mut Writer, truth: &Truth, mount: Mount) {
-    let (pose_name, ball_name) = match mount {
-        Mount::OnFlange => ("flange_from_sensor", "ball_in_base_mm"),
-        Mount::Fixed => ("base_from_sensor", "ball_in_flange_mm"),
+fn truth(out: &mut Writer, truth: &Truth, target: &Target, mount: Mount) {
+    let true_pose = |out: &mut Writer, names: ByMount, rigid: &Rigid| {
+        let name = names.name(mount);
+        out.field(name);
+        pose(out, &Transform::<Base, Flange>::from_rigid(*rigid), None, nested(&truth.unknown, name));
     };
     out.open(Layout::Lines);
-    out.field(pose_name);
-    pose(out, &truth.flange_from_sensor, None, nested(&truth.unknown, pose_name));
-    out.field(ball_name).vec3(&truth.target_in_base_mm);
-    out.unknown(&truth.unknown, names::TRUTH);
+    true_pose(out, names::TRUE_SENSOR, truth.flange_from_sensor.rigid());
+    match target {
+        Target::Ball { .. } => {
+            out.field(names::TRUE_BALL.name(mount)).vec3(&truth.target_in_base_mm);
+        }
+        Target::Point => {
+            out.field(names::TRUE_POINT.name(mount)).vec3(&truth.target_in_base_mm);
+        }
+        Target::RightAnglePlate => {
+            if let Some(base_from_plate) = &truth.base_from_plate {
+                true_pose(out, names::TRUE_PLATE, base_from_plate);
+            }
+        }
+        Target::Workpiece | Target::Rgbd { .. } => {}
+    }
+    out.unknown(&truth.unknown, &names::truth(target));
     out.close();
 }
 

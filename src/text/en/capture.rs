@@ -14,9 +14,11 @@ pub const STEP_HINT: &str = "Connect robot and profiler, search the largest arc,
 /// Start page: heading of the card.
 pub const CELL: &str = "Live cell";
 /// Start page: what it is for.
-pub const CELL_LEAD: &str = "Connect to your robot and profiler, or try everything on a simulated cell first.";
+pub const CELL_LEAD: &str = "Measure with your own devices, or try a simulated cell.";
 /// Button: starts the simulated cell.
 pub const PRACTISE: &str = "Practise on a simulated cell";
+/// The same where there is little room.
+pub const PRACTISE_SHORT: &str = "Practise";
 /// The same, on hover.
 pub const PRACTISE_HINT: &str =
     "Starts a simulated robot and profiler on this computer, connects to them and begins a session for their ball";
@@ -50,6 +52,8 @@ pub const PROFILER_HOST: &str = "Profiler host";
 pub const PROFILER_PORT: &str = "Profiler port";
 /// Name of a field.
 pub const FOLDER: &str = "Watched folder";
+/// Names of the fields for numbers that are no settings.
+pub const OTHER_NUMBERS: [&str; 4] = [ROBOT_PORT, PROFILER_PORT, RUN_STATIONS, BALL_RADIUS];
 /// In an empty field of a host.
 pub const HOST_HINT: &str = "name or IP address";
 /// In an empty field of a folder.
@@ -63,7 +67,7 @@ pub const FOLDER_BUTTON: &str = "Watch";
 /// Checkbox.
 pub const INVERT_Z: &str = "z grows towards the sensor";
 /// The same, on hover.
-pub const INVERT_Z_HINT: &str = "Turns the sign of z about. Tick it if the live profile stands upside down: the ball's top must point to the sensor.";
+pub const INVERT_Z_HINT: &str = "Turns the sign of z about. On the wire of an LJ-V z grows towards the head, so it is ticked for that; most bridges and files have it the other way. Change it if the live profile stands upside down: the ball's top must point to the sensor.";
 /// Button.
 pub const CONNECT: &str = "Connect";
 /// Name of the button.
@@ -231,6 +235,11 @@ pub fn rate(rate_hz: &str) -> String {
 #[must_use]
 pub fn arc(radius: &str, angle_deg: &str, point_std_um: &str) -> String {
     format!("l = {radius} mm   arc of {angle_deg}°   point noise {point_std_um} µm")
+}
+/// The same where there is little room.
+#[must_use]
+pub fn arc_short(radius: &str, angle_deg: &str) -> String {
+    format!("l = {radius} mm   {angle_deg}°")
 }
 /// Name of the profile without an arc.
 pub const NO_ARC: &str = "no arc";
@@ -454,7 +463,7 @@ pub const REPLAY_RUNS: &str = "End the replay first.";
 /// The same.
 pub const NOT_ARMED_YET: &str = "Arm motion first: nobody may be in reach of the robot.";
 /// The same.
-pub const SETTINGS_WRONG: &str = "Put the marked settings right first.";
+pub const SETTINGS_WRONG: &str = "Correct the settings marked red first.";
 /// The same.
 pub const NO_PROFILES: &str = "The session holds no profiles to replay.";
 
@@ -482,8 +491,31 @@ pub const THINKING: &str = "Working out the next step.";
 pub const STOPPING: &str = "Stopping.";
 /// Primary button after a run.
 pub const COMPARE: &str = "Compare the methods";
+/// Button after a run.
+pub const DISARM: &str = "Disarm";
 /// Primary button.
 pub const SET_MOUNTING: &str = "Enter the mounting";
+/// Primary button.
+pub const KEEP_MOUNTING: &str = "Use it here as well";
+/// Why nothing can be proposed or moved.
+pub const OTHER_MOUNTING: &str = "The rough mounting was given for another robot. Is it the same here?";
+/// In the settings, for which robot that was.
+#[must_use]
+pub fn mounting_of(driver: &str, host: &str) -> String {
+    format!("Given for another robot: {driver}, {host}.")
+}
+/// How many more stations make the calibration good.
+#[must_use]
+pub fn outlook(std_mm: &str, num_to_good: Option<usize>, good_mm: f64) -> String {
+    let now = format!("σ of the workspace point: {std_mm} mm");
+    match num_to_good {
+        Some(num) => {
+            let s = super::plural(num);
+            format!("{now}. By the plan about {num} more station{s} bring it to {good_mm} mm, which is Good.")
+        }
+        None => format!("{now}. No number of stations like these brings it to {good_mm} mm, which is Good."),
+    }
+}
 
 /// Why the controller would refuse to move.
 #[must_use]
@@ -494,8 +526,11 @@ pub fn not_ready(found: &str, remedy: &str) -> String {
 /// Sentences of the band: what to do next, and why.
 pub mod now {
     /// Nothing is connected, nothing was before.
-    pub const BEGIN: &str =
-        "No cell is connected. Enter the addresses of your robot and profiler at the left, or practise without any.";
+    pub const BEGIN: &str = "No cell is connected. Enter the addresses of robot and profiler at the left, or practise.";
+    /// A link is broken.
+    pub const ROBOT_FAILED: &str = "The robot is not connected; the reason stands in its card.";
+    /// A link is broken.
+    pub const PROFILER_FAILED: &str = "The profiler is not connected; the reason stands in its card.";
     /// A robot is known.
     pub const CONNECT_ROBOT: &str = "Connect the robot: its pose is read with every profile.";
     /// A profiler is known.
@@ -538,8 +573,16 @@ pub mod now {
     pub const RESUME: &str = "The run is paused before its next motion.";
     /// A run is over.
     pub const COMPARE: &str = "The run is over. See what the methods make of it.";
+    /// A run is over, and the robot may still be moved.
+    #[must_use]
+    pub fn still_armed(sentence: &str) -> String {
+        format!("{sentence} Motion is still armed.")
+    }
     /// Settings are wrong.
-    pub const SETTINGS: &str = "Some settings at the left cannot be: they are marked.";
+    #[must_use]
+    pub fn settings(problem: &str) -> String {
+        format!("Correct the settings marked red at the left. {problem}")
+    }
 }
 
 /// A single profile was captured.

@@ -41,9 +41,9 @@ pub const MAX_CAPTURES: &str = "Most profiles";
 /// Field.
 pub const STOP_RULE: &str = "Stop once";
 /// Choice.
-pub const STOP_PEAK: &str = "the peak is known";
+pub const STOP_PEAK: &str = "peak known";
 /// Choice.
-pub const STOP_PUBLISHED: &str = "l ≥ R, as published";
+pub const STOP_PUBLISHED: &str = "l ≥ R (paper)";
 /// Field.
 pub const PEAK_STD: &str = "Peak known to";
 
@@ -128,14 +128,26 @@ pub fn captures_summary(settle_ms: u32, num_profiles: u16) -> String {
 /// The mounting in one line.
 pub const GIVEN: &str = "given";
 /// The same.
+pub const GIVEN_ELSEWHERE: &str = "from another robot";
+/// The same.
 pub const NOT_GIVEN: &str = "not given";
+
+/// A number that was typed and is not used.
+#[must_use]
+pub fn not_taken(name: &str, typed: &str, least: &str, most: &str, unit: &str, kept: &str, is_whole: bool) -> String {
+    let kind = if is_whole { "a whole number" } else { "a number" };
+    let typed = if typed.is_empty() { "nothing" } else { typed };
+    format!("{name}: {typed} is not taken, {kept}{unit} stays. Enter {kind} from {least} to {most}{unit}.")
+}
 
 /// Something about the settings that cannot be, and what to do.
 pub mod problem {
     /// A direction without length.
-    pub const NO_DIRECTION: &str = "The direction has no length: give it a part along some axis.";
+    pub const NO_DIRECTION: &str = "The direction has no length: enter a part along some axis.";
     /// Less travel than two steps.
     pub const LITTLE_TRAVEL: &str = "The travel is less than two steps: allow more, or step less.";
+    /// Coarse steps that are finer than the fine ones.
+    pub const COARSE_IS_FINER: &str = "The coarse step is smaller than the step: make it at least as long.";
     /// Fast transit.
     pub const TRANSIT_TOO_FAST: &str = "The speed to a station is above the speed cap.";
     /// Fast search.

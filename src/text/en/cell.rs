@@ -141,8 +141,14 @@ pub fn stopped(station: &str, num_captures: usize) -> String {
 
 /// A run that somebody stopped.
 #[must_use]
-pub fn run_stopped(num_done: u16, num_stations: u16) -> String {
-    format!("the run was stopped after {num_done} of {num_stations} stations; what was captured is kept")
+pub fn run_stopped(num_done: u16, num_stations: u16, is_armed: bool) -> String {
+    let armed = still_armed(is_armed);
+    format!("the run was stopped after {num_done} of {num_stations} stations; what was captured is kept{armed}")
+}
+
+/// Whoever comes back to the cell after a run should know.
+const fn still_armed(is_armed: bool) -> &'static str {
+    if is_armed { ". Motion is still armed" } else { "" }
 }
 
 const fn stop_taken(robot_stopped: Option<bool>) -> &'static str {
@@ -155,9 +161,10 @@ const fn stop_taken(robot_stopped: Option<bool>) -> &'static str {
 
 /// A run came to its end.
 #[must_use]
-pub fn run_done(num_done: u16, num_failed: u16) -> String {
+pub fn run_done(num_done: u16, num_failed: u16, is_armed: bool) -> String {
     let given_up = if num_failed == 0 { String::new() } else { format!(", {num_failed} given up") };
-    format!("run done: {num_done} station{} measured{given_up}", plural(num_done.into()))
+    let armed = still_armed(is_armed);
+    format!("run done: {num_done} station{} measured{given_up}{armed}", plural(num_done.into()))
 }
 
 /// A run ended before its time.

@@ -1,6 +1,7 @@
 //! Sentences of the findings of `handeye check`.
 
 use crate::session::check::Finding;
+use crate::session::table::edge_text;
 
 use super::plural;
 
@@ -16,6 +17,16 @@ pub fn finding_message(finding: &Finding) -> String {
         Finding::FewStations { num_enabled, needed } => {
             format!("{num_enabled} enabled station{}: at least {needed} are needed to solve.", plural(*num_enabled))
         }
+        Finding::EdgeWithoutStations { edge } => format!(
+            "No enabled station saw edge {}: the plate is only known from both; set in Poses which edge each station saw.",
+            edge_text(*edge)
+        ),
+        Finding::FewOnEdge { edge, num_enabled, needed } => format!(
+            "{num_enabled} enabled station{} saw edge {}: at least {needed} are recommended on each.",
+            plural(*num_enabled),
+            edge_text(*edge)
+        ),
+        Finding::InFurther { name, finding } => format!("{name}: {}", finding_message(finding)),
         Finding::TwinStations { label, twin_label, distance_mm, angle_deg } => format!(
             "Stations {label} and {twin_label} have the same pose within {distance_mm:.2} mm and {angle_deg:.2}°: the second adds little."
         ),

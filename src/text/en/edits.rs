@@ -19,6 +19,16 @@ pub fn edit_label(edit: &Edit, session: &Session) -> String {
         Edit::Setup(field) => format!("change {}", field_name(field)),
         Edit::SwitchNotation(notation) => format!("show poses as {}", notation_in_full(notation)),
         Edit::Reinterpret(notation) => format!("read the same numbers as {}", notation_in_full(notation)),
+        Edit::SetKnown(_) => "change what is known of the target".to_owned(),
+        Edit::SetRoughMounting(_) => "change the rough mounting".to_owned(),
+        Edit::AddFurther(added) => format!("add {}", added.name),
+        Edit::RemoveFurther(idx) => format!("remove {}", further_name(*idx, session)),
+        Edit::RenameFurther(idx, _) => format!("rename {}", further_name(*idx, session)),
+        Edit::SetFurtherKnown(idx, _) => format!("change what is known of {}", further_name(*idx, session)),
+        Edit::UseFurtherStations { further_idx, station_idxs, used } => {
+            let verb = if *used { "use" } else { "leave out" };
+            format!("{verb} {}", further_stations(*further_idx, station_idxs, session))
+        }
         Edit::Several(edits) => several_label(edits, session),
     }
 }
@@ -47,6 +57,22 @@ pub fn capture_label(station: &str) -> String {
 
 fn station_name(station_idx: usize, session: &Session) -> String {
     session.stations.get(station_idx).map_or_else(String::new, |station| format!("station {}", station.label))
+}
+
+fn further_name(further_idx: usize, session: &Session) -> &str {
+    session.further.get(further_idx).map_or("", |further| further.name.as_str())
+}
+
+fn further_stations(further_idx: usize, station_idxs: &[usize], session: &Session) -> String {
+    let name = further_name(further_idx, session);
+    let only = match station_idxs {
+        [idx] => session.further.get(further_idx).and_then(|further| further.stations.get(*idx)),
+        _ => None,
+    };
+    match only {
+        Some(station) => format!("station {} of {name}", station.label),
+        None => format!("{} stations of {name}", station_idxs.len()),
+    }
 }
 
 fn rows_name(rows: &[Row], session: &Session) -> String {

@@ -142,6 +142,9 @@ pub fn finding_word(finding: &Finding) -> String {
         Finding::QuaternionsNormalised { .. }
         | Finding::NoStations
         | Finding::FewStations { .. }
+        | Finding::EdgeWithoutStations { .. }
+        | Finding::FewOnEdge { .. }
+        | Finding::InFurther { .. }
         | Finding::NoiseNotGiven { .. } => String::new(),
     }
 }

@@ -54,7 +54,7 @@ fn points_keep_their_class_and_residual() {
     );
     // The outlier lies 15 mm from the centre of a circle of 10 mm.
     assert!((model.points[21].residual_um - 5000.0).abs() < 1e-6);
-    let section = model.section.expect("a section");
+    let section = model.section().expect("a section");
     assert!(section.rms_um < 1e-6 && section.shift_um.iter().all(|shift| shift.abs() < 1e-9));
 }
 
@@ -64,7 +64,7 @@ fn a_refused_profile_keeps_its_points_and_says_why() {
     let refusal = ArcRefusal::TooFewPoints { found: 3, needed: 8 };
     let reading = calibrate::Reading::Refused(refusal.clone().into());
     let model = profile_model(&profile, Some(&reading), None, CircleMethod::Robust);
-    assert_eq!(model.section, Err(refusal.to_string()));
+    assert_eq!(model.found, Err(refusal.to_string()));
     assert_eq!(model.points.len(), 23);
     assert!(capture_row(Some(&reading)).problem.is_some());
 }

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use egui::{Button, ComboBox, DragValue, Frame, Margin, Response, Role, TextEdit, Ui, WidgetInfo, vec2};
+use egui::{Button, ComboBox, Frame, Label, Margin, Response, RichText, Role, TextEdit, Ui, WidgetInfo, vec2};
 
 use crate::app::cell::CellCommand;
 use crate::device::{Endpoint, LinkState, Readiness, RobotKind, SensorKind};
@@ -11,9 +11,12 @@ use crate::ui::actions::Action;
 use crate::ui::theme;
 use crate::ui::widgets::{card, fixed, number_text, split_row, value_row};
 
-use super::fields::{hint, lamp, number, remark};
+use super::fields::{Fields, Number, hint, lamp, remark};
 use super::model;
 use super::panel::Desk;
+
+/// Width of the field for a port, points.
+const PORT_WIDTH: f32 = 72.0;
 
 /// Shows the cards.
 pub fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
@@ -57,6 +60,11 @@ fn small_button(ui: &mut Ui, label: &str, name: &str) -> Response {
     response
 }
 
+/// Offers to connect again at once, below what happened; a simulated cell has nothing to be mended.
+fn retries(ui: &mut Ui, name: &str, shape: model::Lamp, is_practice: bool) -> bool {
+    shape == model::Lamp::Bad && !is_practice && ui.scope(|ui| small_button(ui, words::RETRY, name)).inner.clicked()
+}
+
 fn robot(ui: &mut Ui, desk: &mut Desk<'_>) {
     let cell = desk.view.cell;
     let (shape, word, remedy) = model::robot_lamp(cell);
@@ -65,6 +73,7 @@ fn robot(ui: &mut Ui, desk: &mut Desk<'_>) {
     let is_off = cell.robot.state == LinkState::Off;
     let is_practice = cell.is_practice;
     let mut command = None;
+    let mut wants_again = false;
     let right = |ui: &mut Ui| {
         if is_replay {
             ui.label(theme::dim(ui, words::RECORDED));
@@ -72,12 +81,6 @@ fn robot(ui: &mut Ui, desk: &mut Desk<'_>) {
         }
         if !is_off && !is_practice && small_button(ui, words::DISCONNECT, words::DISCONNECT_ROBOT).clicked() {
             command = Some(CellCommand::DisconnectRobot);
-        }
-        let setup = cell.robot.setup.as_ref().filter(|_| shape == model::Lamp::Bad && !is_practice);
-        if let Some(setup) = setup
-            && small_button(ui, words::RETRY, words::RETRY_ROBOT).clicked()
-        {
-            command = Some(CellCommand::ConnectRobot(setup.clone()));
         }
         lamp(ui, shape, word, words::ROBOT);
     };
@@ -87,6 +90,7 @@ fn robot(ui: &mut Ui, desk: &mut Desk<'_>) {
                 let palette = theme::palette(ui);
                 let color = if shape == model::Lamp::Bad { palette.bad } else { palette.warn };
                 remark(ui, "!", remedy, color);
+                wants_again = retries(ui, words::RETRY_ROBOT, shape, is_practice);
             }
             if is_off && !is_replay {
                 robot_form(ui, desk);
@@ -95,6 +99,9 @@ fn robot(ui: &mut Ui, desk: &mut Desk<'_>) {
             }
         });
     });
+    if wants_again {
+        command = cell.robot.setup.clone().map(CellCommand::ConnectRobot);
+    }
     if let Some(command) = command {
         desk.ask(command);
     }
@@ -108,7 +115,8 @@ fn robot_form(ui: &mut Ui, desk: &mut Desk<'_>) {
         }
     });
     desk.memory.robot_kind = kind;
-    let is_entered = endpoint(ui, &mut desk.memory.robot().endpoint, words::ROBOT_HOST, words::ROBOT_PORT);
+    let is_entered =
+        endpoint(ui, &mut desk.state.fields, &mut desk.memory.robot().endpoint, words::ROBOT_HOST, words::ROBOT_PORT);
     hint(ui, words::robot_kind_hint(kind));
     let setup = desk.memory.robot_to_connect();
     let refusal = setup.is_none().then_some(words::NO_HOST);
@@ -141,7 +149,8 @@ fn robot_state(ui: &mut Ui, desk: &Desk<'_>) {
         Readiness::NotReady { .. } => theme::palette(ui).warn,
         _ => theme::palette(ui).text,
     };
-    split_row(ui, words::READINESS, |ui| ui.colored_label(color, words::readiness(&report.readiness)));
+    let readiness = RichText::new(words::readiness(&report.readiness)).color(color);
+    split_row(ui, words::READINESS, |ui| ui.add(Label::new(readiness).truncate()));
     let tool = if report.tool.is_empty() { words::TOOL_NOT_TOLD } else { &report.tool };
     value_row(ui, words::TOOL, tool).on_hover_text(words::TOOL_HINT);
 }
@@ -166,6 +175,7 @@ fn profiler(ui: &mut Ui, desk: &mut Desk<'_>) {
     let is_off = cell.sensor.state == LinkState::Off;
     let is_practice = cell.is_practice;
     let mut command = None;
+    let mut wants_again = false;
     let right = |ui: &mut Ui| {
         if is_replay {
             ui.label(theme::dim(ui, words::RECORDED));
@@ -174,18 +184,13 @@ fn profiler(ui: &mut Ui, desk: &mut Desk<'_>) {
         if !is_off && !is_practice && small_button(ui, words::DISCONNECT, words::DISCONNECT_PROFILER).clicked() {
             command = Some(CellCommand::DisconnectSensor);
         }
-        let setup = cell.sensor.setup.as_ref().filter(|_| shape == model::Lamp::Bad && !is_practice);
-        if let Some(setup) = setup
-            && small_button(ui, words::RETRY, words::RETRY_PROFILER).clicked()
-        {
-            command = Some(CellCommand::ConnectSensor(setup.clone()));
-        }
         lamp(ui, shape, word, words::PROFILER);
     };
     card(ui, words::PROFILER, right, |ui| {
         inside(ui, |ui| {
             if let Some(remedy) = remedy.as_ref().filter(|_| !is_replay) {
                 remark(ui, "!", remedy, theme::palette(ui).bad);
+                wants_again = retries(ui, words::RETRY_PROFILER, shape, is_practice);
             }
             if is_off && !is_replay {
                 profiler_form(ui, desk);
@@ -212,6 +217,9 @@ fn profiler(ui: &mut Ui, desk: &mut Desk<'_>) {
             }
         });
     });
+    if wants_again {
+        command = cell.sensor.setup.clone().map(CellCommand::ConnectSensor);
+    }
     if let Some(command) = command {
         desk.ask(command);
     }
@@ -235,6 +243,7 @@ fn profiler_form(ui: &mut Ui, desk: &mut Desk<'_>) {
                     desk.actions.push(Action::ChooseWatchedFolder);
                 }
                 let field = text_field(ui, &mut folder, words::FOLDER, words::FOLDER_HINT);
+                desk.state.fields.hand_over(words::FOLDER, &field);
                 if field.changed() {
                     setup.folder = folder.as_str().into();
                 }
@@ -243,7 +252,7 @@ fn profiler_form(ui: &mut Ui, desk: &mut Desk<'_>) {
         });
         is_entered
     } else {
-        endpoint(ui, &mut setup.endpoint, words::PROFILER_HOST, words::PROFILER_PORT)
+        endpoint(ui, &mut desk.state.fields, &mut setup.endpoint, words::PROFILER_HOST, words::PROFILER_PORT)
     };
     ui.checkbox(&mut setup.is_z_inverted, words::INVERT_Z).on_hover_text(words::INVERT_Z_HINT);
     hint(ui, words::sensor_kind_hint(kind));
@@ -262,16 +271,18 @@ fn chooser(ui: &mut Ui, name: &'static str, chosen: &str, offers: impl FnOnce(&m
 }
 
 /// Host and port in a row; answers whether Enter was pressed.
-fn endpoint(ui: &mut Ui, endpoint: &mut Endpoint, host_name: &str, port_name: &str) -> bool {
+fn endpoint(ui: &mut Ui, fields: &mut Fields, endpoint: &mut Endpoint, host_name: &str, port_name: &str) -> bool {
     let mut is_entered = false;
     ui.horizontal(|ui| {
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let port = DragValue::new(&mut endpoint.port).range(1..=u16::MAX).speed(0.2);
-            number(ui, port_name, "", port);
+            let port = Number::new(&mut endpoint.port, 1.0..=65535.0, "", 0.2).width(PORT_WIDTH);
+            fields.number(ui, port_name, "", port);
             let field = text_field(ui, &mut endpoint.host, host_name, words::HOST_HINT);
+            fields.hand_over(host_name, &field);
             is_entered = is_entered_in(ui, &field);
         });
     });
+    fields.remarks(ui, |name| name == port_name);
     is_entered
 }
 
@@ -292,8 +303,8 @@ fn text_field(ui: &mut Ui, text: &mut String, name: &str, hint: &str) -> Respons
 }
 
 fn connect(ui: &mut Ui, name: &str, refusal: Option<&str>) -> bool {
-    let width = ui.available_width();
-    let response = ui.add_enabled(refusal.is_none(), Button::new(words::CONNECT).min_size(vec2(width, 32.0)));
+    let button = Button::new(words::CONNECT).min_size(vec2(0.0, 32.0));
+    let response = ui.vertical_centered_justified(|ui| ui.add_enabled(refusal.is_none(), button)).inner;
     response.widget_info(|| WidgetInfo::labeled(Role::Button, refusal.is_none(), name));
     match refusal {
         Some(reason) => response.on_disabled_hover_text(reason).clicked(),

@@ -3,7 +3,7 @@
 use std::rc::Rc;
 use std::sync::Arc;
 
-use egui::{RichText, Ui, UiBuilder, vec2};
+use egui::{Color32, RichText, Ui, UiBuilder, vec2};
 
 use crate::app::cell::LiveProfile;
 use crate::calibrate::Reading;
@@ -83,18 +83,21 @@ fn live_card(ui: &mut Ui, height: f32, desk: &mut Desk<'_>) {
 /// Radius, angle and noise, in the line above the plot; the centre stands in it.
 fn arc_line(ui: &mut Ui, live: &LiveProfile) {
     egui::Frame::new().inner_margin(egui::Margin { left: 12, right: 12, top: 6, bottom: 0 }).show(ui, |ui| {
-        let palette = theme::palette(ui);
-        let (line, color) = match &live.arc {
-            Ok(arc) => {
-                let std_mm = arc.std_mm();
-                let radius = with_std(arc.circle.radius_mm, std_mm[2]);
-                let angle_deg = fixed(arc.angle_rad.to_degrees(), 0);
-                (words::arc(&radius, &angle_deg, &fixed(arc.point_std_mm * 1000.0, 1)), palette.text)
-            }
-            Err(_) => (format!("! {}", words::NO_ARC), palette.warn),
+        let Ok(arc) = &live.arc else {
+            let line = format!("! {}", words::NO_ARC);
+            ui.label(RichText::new(line).font(theme::number_font()).color(theme::palette(ui).warn));
+            return;
         };
-        let line = RichText::new(line).font(theme::number_font()).color(color);
-        ui.add(egui::Label::new(line).truncate());
+        let radius = with_std(arc.circle.radius_mm, arc.std_mm()[2]);
+        let angle_deg = fixed(arc.angle_rad.to_degrees(), 0);
+        let line = words::arc(&radius, &angle_deg, &fixed(arc.point_std_mm * 1000.0, 1));
+        let whole = ui.painter().layout_no_wrap(line.clone(), theme::number_font(), Color32::PLACEHOLDER);
+        if whole.size().x <= ui.available_width() {
+            ui.label(RichText::new(line).font(theme::number_font()));
+        } else {
+            let short = RichText::new(words::arc_short(&radius, &angle_deg)).font(theme::number_font());
+            ui.add(egui::Label::new(short).truncate()).on_hover_text(line);
+        }
     });
 }
 

@@ -6,6 +6,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::app::cell::CellSettings;
 use crate::device::{Endpoint, RobotKind, RobotSetup, SensorKind, SensorSetup};
+use crate::text::cell::make_of_robot;
 
 /// The setups used last, one a driver, and the settings.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -19,6 +20,8 @@ pub struct CellMemory {
     sensors: Vec<SensorSetup>,
     /// What is set before motion.
     pub settings: CellSettings,
+    /// The robot that the mounting in the settings was given for; `None` while no robot was there.
+    pub mounting_of: Option<RobotSetup>,
     /// Stations of a run.
     pub num_stations: NumStations,
 }
@@ -46,12 +49,23 @@ impl CellMemory {
         &mut self.robots[idx]
     }
 
+    /// Whether the mounting was given for another robot than this one: another make, or at another address.
+    #[must_use]
+    pub fn has_mounting_of_other(&self, robot: &RobotSetup) -> bool {
+        self.mounting_of.as_ref().is_some_and(|known| {
+            let is_same_make = known.kind == robot.kind || make_of_robot(known.kind) == make_of_robot(robot.kind);
+            !is_same_make || known.endpoint.host.trim() != robot.endpoint.host.trim()
+        })
+    }
+
     /// The setup of the chosen driver, to be edited.
     pub fn sensor(&mut self) -> &mut SensorSetup {
         let kind = self.sensor_kind;
         let idx = self.sensors.iter().position(|setup| setup.kind == kind).unwrap_or_else(|| {
             let endpoint = Endpoint { host: String::new(), port: kind.default_port() };
-            self.sensors.push(SensorSetup { kind, endpoint, folder: PathBuf::new(), is_z_inverted: false });
+            // On the LJ-V's wire z grows towards the head; whoever writes a bridge or a file mostly has it the other way.
+            let is_z_inverted = kind == SensorKind::KeyenceLjv;
+            self.sensors.push(SensorSetup { kind, endpoint, folder: PathBuf::new(), is_z_inverted });
             self.sensors.len() - 1
         });
         &mut self.sensors[idx]
@@ -107,6 +121,7 @@ pub fn from_text<'de, D: Deserializer<'de>>(deserializer: D) -> Result<CellMemor
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::device::sim::{SimCell, SimOptions};
     use crate::ui::persisted::Persisted;
 
     #[test]
@@ -122,6 +137,16 @@ mod tests {
         assert_eq!((setup.endpoint.host.as_str(), setup.endpoint.port), ("10.0.0.5", 18735));
         memory.watch(PathBuf::from("/profiles"));
         assert_eq!(memory.sensor_to_connect().expect("a folder").folder, PathBuf::from("/profiles"));
+    }
+
+    #[test]
+    fn z_is_turned_about_as_the_simulated_cell_needs_it() {
+        for kind in [SensorKind::KeyenceLjv, SensorKind::Bridge] {
+            let options = SimOptions { sensor: kind, ..SimOptions::default() };
+            let sim = SimCell::start(&options).expect("ports are free");
+            let mut memory = CellMemory { sensor_kind: kind, ..CellMemory::default() };
+            assert_eq!(memory.sensor().is_z_inverted, sim.sensor_setup.is_z_inverted, "{kind:?}");
+        }
     }
 
     #[test]

@@ -7,6 +7,7 @@ mod machine;
 pub mod memory;
 pub mod model;
 pub mod mounting;
+pub mod next;
 mod orientation;
 mod panel;
 mod settings;

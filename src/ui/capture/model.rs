@@ -1,19 +1,19 @@
 //! What the capture panel shows and offers, made without egui from the live cell and the open session.
 
 use crate::app::Workbench;
-use crate::app::cell::{Activity, CellCommand, CellSettings, CellView};
+use crate::app::cell::{CellCommand, CellSettings, CellView};
 use crate::calibrate::SweepPoint;
+use crate::calibrate::verdict::GOOD_UP_TO_MM;
 use crate::device::safety::MOST_ROTATION_SPEED_DEG_S;
 use crate::device::search::SearchPoint;
 use crate::device::{LinkState, Readiness, RobotReport, SearchPhase, SearchReport};
 use crate::geometry::{Base, Flange, PoseNotation, Transform};
+use crate::plan::{Plan, PlannedStation};
 use crate::session::{Reading, Session};
 use crate::text::capture as words;
-use crate::text::capture_settings::problem;
+use crate::text::capture_settings::{self as words_of_settings, problem};
 use crate::ui::arcs::model::{Peak, ball_radius_mm};
 use crate::ui::widgets::fixed;
-
-use super::memory::CellMemory;
 
 /// What the panel is a picture of.
 #[derive(Clone, Copy)]
@@ -24,6 +24,44 @@ pub struct View<'a> {
     pub session: Option<&'a Session>,
     /// Whether some method has a solution, which knows the mounting better than a drawing.
     pub has_solution: bool,
+    /// What the next stations will bring; `None` without a plan.
+    pub outlook: Option<Outlook>,
+    /// Whether the mounting that is remembered was given for another robot than the one that is connected.
+    pub has_other_mounting: bool,
+}
+
+/// How well the calibration is known, and what it takes to be called good.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outlook {
+    /// σ of the workspace point, mm.
+    pub std_mm: f64,
+    /// About so many more stations make it good; `None` if the planned ones hardly help.
+    pub num_to_good: Option<usize>,
+}
+
+impl Outlook {
+    /// That of a plan; `None` where it is good already, or cannot be told.
+    #[must_use]
+    pub fn new(plan: &Plan) -> Option<Self> {
+        let std_mm = plan.workspace_point_std_mm.filter(|std_mm| *std_mm > GOOD_UP_TO_MM)?;
+        let stds_mm: Vec<f64> =
+            plan.stations.iter().map_while(|station: &PlannedStation| station.workspace_point_std_mm).collect();
+        let within_plan = stds_mm.iter().position(|std_mm| *std_mm <= GOOD_UP_TO_MM).map(|idx| idx + 1);
+        let num_to_good = within_plan.or_else(|| beyond_plan(std_mm, &stds_mm));
+        Some(Self { std_mm, num_to_good })
+    }
+}
+
+/// As many stations as it takes if each of them tells as much as the planned ones do on average.
+fn beyond_plan(now_mm: f64, stds_mm: &[f64]) -> Option<usize> {
+    /// More than anybody measures.
+    const MOST: f64 = 100.0;
+    let information = |std_mm: f64| std_mm.powi(-2);
+    #[expect(clippy::cast_precision_loss, reason = "a handful of stations")]
+    let gain = (information(*stds_mm.last()?) - information(now_mm)) / stds_mm.len() as f64;
+    let num = ((information(GOOD_UP_TO_MM) - information(now_mm)) / gain).ceil();
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the limits")]
+    (1.0..=MOST).contains(&num).then_some(num as usize)
 }
 
 impl<'a> View<'a> {
@@ -36,6 +74,8 @@ impl<'a> View<'a> {
             cell: workbench.cell(),
             session: workbench.document().map(|document| document.session.as_ref()),
             has_solution,
+            outlook: workbench.current_plan().and_then(Outlook::new),
+            has_other_mounting: false,
         }
     }
 
@@ -60,7 +100,13 @@ impl<'a> View<'a> {
     /// Whether the next stations can be proposed.
     #[must_use]
     pub const fn knows_mounting(&self) -> bool {
-        self.has_solution || self.cell.settings.mounting.is_some()
+        self.has_solution || self.cell.settings.mounting.is_some() && !self.has_other_mounting
+    }
+
+    /// Whether somebody has to say first that the mounting is this robot's as well.
+    #[must_use]
+    pub const fn doubts_mounting(&self) -> bool {
+        !self.has_solution && self.cell.settings.mounting.is_some() && self.has_other_mounting
     }
 
     fn has_profiles(&self) -> bool {
@@ -88,169 +134,6 @@ pub fn may_be_moving(cell: &CellView) -> bool {
 #[must_use]
 pub fn is_run_over(cell: &CellView) -> bool {
     !is_running(cell) && cell.run.is_some_and(|run| run.num_done >= run.num_stations)
-}
-
-/// Something that a button of the panel asks for.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Deed {
-    /// A command for the cell.
-    Cell(CellCommand),
-    /// A session for the ball of the radius in the field.
-    NewSession,
-    /// To see the settings of the mounting.
-    ShowMounting,
-    /// To go to the comparison.
-    Compare,
-}
-
-/// What to do next, in a sentence, with at most one button.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Next {
-    /// The sentence.
-    pub sentence: String,
-    /// What the primary button says and does.
-    pub button: Option<(&'static str, Deed)>,
-}
-
-impl Next {
-    fn wait(sentence: impl Into<String>) -> Self {
-        Self { sentence: sentence.into(), button: None }
-    }
-
-    fn offer(sentence: &str, label: &'static str, deed: Deed) -> Self {
-        Self { sentence: sentence.to_owned(), button: Some((label, deed)) }
-    }
-
-    fn command(sentence: &str, label: &'static str, command: CellCommand) -> Self {
-        Self::offer(sentence, label, Deed::Cell(command))
-    }
-}
-
-/// The one obvious next thing at this moment: for an operator in gloves.
-#[must_use]
-pub fn next(view: &View<'_>, memory: &CellMemory) -> Next {
-    let cell = view.cell;
-    if let Some(next) = next_while_running(view).or_else(|| next_connection(view, memory)) {
-        return next;
-    }
-    if is_run_over(cell) && cell.proposal.is_none() {
-        return Next::offer(words::now::COMPARE, words::COMPARE, Deed::Compare);
-    }
-    let Some(radius_mm) = view.ball_radius_mm() else {
-        let sentence = if view.session.is_some() { words::now::OTHER_TARGET } else { words::now::SESSION };
-        return Next::offer(sentence, words::NEW_SESSION, Deed::NewSession);
-    };
-    let Some(live) = &cell.live else { return Next::wait(words::now::PROFILE) };
-    let readiness = cell.robot.latest.as_ref().map(|report| &report.readiness);
-    if let Some(Readiness::NotReady { found, remedy }) = readiness {
-        return Next::wait(words::not_ready(found, remedy));
-    }
-    if !problems(&cell.settings, radius_mm, cell.robot.latest.as_ref()).is_empty() {
-        return Next::wait(words::now::SETTINGS);
-    }
-    if let Some(proposal) = &cell.proposal {
-        return match (&proposal.refusal, cell.is_armed) {
-            (_, false) => Next::command(words::now::ARM_FOR_PROPOSAL, words::ARM, CellCommand::Arm(true)),
-            (None, true) => Next::command(words::now::ACCEPT, words::ACCEPT, CellCommand::AcceptProposal),
-            (Some(_), true) => Next::command(words::now::SKIP, words::ANOTHER, CellCommand::SkipProposal),
-        };
-    }
-    if live.arc.is_err() {
-        return Next::wait(words::now::JOG);
-    }
-    if readiness == Some(&Readiness::ReadOnly) {
-        return Next::command(words::now::CAPTURE, words::CAPTURE, CellCommand::CaptureStation);
-    }
-    if view.num_stations() > 0 && !view.knows_mounting() {
-        return Next::offer(words::now::MOUNT, words::SET_MOUNTING, Deed::ShowMounting);
-    }
-    if !cell.is_armed {
-        return Next::command(words::now::ARM, words::ARM, CellCommand::Arm(true));
-    }
-    if view.knows_mounting() {
-        let num_stations = memory.num_stations.0;
-        return Next::command(words::now::RUN, words::START_RUN, CellCommand::StartRun { num_stations });
-    }
-    Next::command(words::now::FIND, words::FIND, CellCommand::FindLargestArc)
-}
-
-fn next_while_running(view: &View<'_>) -> Option<Next> {
-    let cell = view.cell;
-    if let Some(replay) = cell.replay {
-        if replay.is_over {
-            return Some(Next::command(words::REPLAY_OVER, words::END_REPLAY, CellCommand::EndReplay));
-        }
-        return Some(Next::wait(replay_words(view).unwrap_or_default()));
-    }
-    if let Some(run) = cell.run {
-        if run.is_asking {
-            let is_refused = cell.proposal.as_ref().is_some_and(|proposal| proposal.refusal.is_some());
-            return Some(if is_refused {
-                Next::command(words::now::SKIP, words::ANOTHER, CellCommand::SkipProposal)
-            } else {
-                Next::command(words::now::ACCEPT, words::ACCEPT, CellCommand::AcceptProposal)
-            });
-        }
-        // While the next step is worked out, nothing moves either.
-        if run.is_paused && matches!(cell.activity, Activity::Idle | Activity::Thinking) {
-            return Some(Next::command(words::now::RESUME, words::RESUME, CellCommand::ResumeRun));
-        }
-    }
-    let waits_for_file = cell.activity == Activity::Settling && cell.watched_folder.is_some();
-    let told = if waits_for_file { Some(words::SETTLING_BY_FOLDER) } else { activity(cell.activity) };
-    Some(Next::wait(told?))
-}
-
-const fn activity(activity: Activity) -> Option<&'static str> {
-    match activity {
-        Activity::Idle => None,
-        Activity::Moving => Some(words::MOVING),
-        Activity::Settling => Some(words::SETTLING),
-        Activity::Thinking => Some(words::THINKING),
-        Activity::Stopping => Some(words::STOPPING),
-    }
-}
-
-/// Where the replay is, in words.
-#[must_use]
-pub fn replay_words(view: &View<'_>) -> Option<String> {
-    let replay = view.cell.replay?;
-    let station = view.session?.stations.get(replay.station_idx)?;
-    Some(words::replaying(&station.label, replay.capture_idx + 1, station.captures.len()))
-}
-
-fn next_connection(view: &View<'_>, memory: &CellMemory) -> Option<Next> {
-    let cell = view.cell;
-    let (robot, sensor) = (&cell.robot.state, &cell.sensor.state);
-    for state in [robot, sensor] {
-        if let LinkState::Failed { error, .. } = state {
-            return Some(Next::wait(error.to_string()));
-        }
-    }
-    if [robot, sensor].into_iter().any(|state| *state == LinkState::Connecting) {
-        return Some(Next::wait(words::now::CONNECTING));
-    }
-    if *robot == LinkState::Off {
-        return Some(match memory.robot_to_connect() {
-            Some(setup) => {
-                Next::command(words::now::CONNECT_ROBOT, words::CONNECT_ROBOT, CellCommand::ConnectRobot(setup))
-            }
-            None if *sensor == LinkState::Off => {
-                Next::command(words::now::BEGIN, words::PRACTISE, CellCommand::Practise)
-            }
-            None => Next::wait(words::now::ENTER_ROBOT),
-        });
-    }
-    if *sensor == LinkState::Off {
-        return Some(memory.sensor_to_connect().map_or_else(
-            || Next::wait(words::now::ENTER_PROFILER),
-            |setup| {
-                let command = CellCommand::ConnectSensor(setup);
-                Next::command(words::now::CONNECT_PROFILER, words::CONNECT_PROFILER, command)
-            },
-        ));
-    }
-    None
 }
 
 /// Why a command cannot be given now; `None` if it can.
@@ -288,6 +171,9 @@ pub fn refusal(view: &View<'_>, command: &CellCommand) -> Option<&'static str> {
     let Some(radius_mm) = view.ball_radius_mm() else { return Some(words::NO_BALL_SESSION) };
     if moves && !problems(&cell.settings, radius_mm, cell.robot.latest.as_ref()).is_empty() {
         return Some(words::SETTINGS_WRONG);
+    }
+    if (moves || proposes) && view.doubts_mounting() {
+        return Some(words::OTHER_MOUNTING);
     }
     if proposes && !view.knows_mounting() {
         return Some(words::NEEDS_MOUNTING);
@@ -505,34 +391,52 @@ pub fn search_curve(search: &SearchReport, ball_radius_mm: f64) -> SearchCurve {
     }
 }
 
-/// What is wrong with the settings, and what to do; empty if nothing is.
+/// Something that is wrong with the settings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Problem {
+    /// What, and what to do.
+    pub sentence: &'static str,
+    /// The names of the fields that it is about.
+    pub fields: &'static [&'static str],
+}
+
+/// What is wrong with the settings; empty if nothing is.
 #[must_use]
-pub fn problems(settings: &CellSettings, ball_radius_mm: f64, robot: Option<&RobotReport>) -> Vec<&'static str> {
+pub fn problems(settings: &CellSettings, ball_radius_mm: f64, robot: Option<&RobotReport>) -> Vec<Problem> {
+    const BOX: &[&str] = words_of_settings::SIDES.as_flattened();
     let (search, limits) = (&settings.search, &settings.limits);
     let longest_step_mm = search.step_mm.max(search.coarse_step_mm);
+    let has_coarse_steps = search.coarse_step_mm > search.step_mm;
+    let longest_step: &[&str] =
+        if has_coarse_steps { &[words_of_settings::COARSE_STEP] } else { &[words_of_settings::STEP] };
     let mut found = Vec::new();
-    let mut check = |is_wrong: bool, words| {
+    let mut check = |is_wrong: bool, sentence, fields| {
         if is_wrong {
-            found.push(words);
+            found.push(Problem { sentence, fields });
         }
     };
-    check(search.direction.iter().all(|part| *part == 0.0), problem::NO_DIRECTION);
-    check(search.max_travel_mm < 2.0 * search.step_mm, problem::LITTLE_TRAVEL);
-    check(longest_step_mm > ball_radius_mm, problem::STEP_BEYOND_BALL);
-    check(longest_step_mm > limits.max_move_mm, problem::STEP_TOO_LONG);
-    check(limits.transit_speed_mm_s > limits.max_speed_mm_s, problem::TRANSIT_TOO_FAST);
-    check(limits.search_speed_mm_s > limits.max_speed_mm_s, problem::SEARCH_TOO_FAST);
+    let has_no_direction = search.direction.iter().all(|part| *part == 0.0);
+    check(has_no_direction, problem::NO_DIRECTION, &words_of_settings::PARTS);
+    check(search.max_travel_mm < 2.0 * search.step_mm, problem::LITTLE_TRAVEL, &[words_of_settings::MAX_TRAVEL]);
+    check(search.coarse_step_mm < search.step_mm, problem::COARSE_IS_FINER, &[words_of_settings::COARSE_STEP]);
+    check(longest_step_mm > ball_radius_mm, problem::STEP_BEYOND_BALL, longest_step);
+    check(longest_step_mm > limits.max_move_mm, problem::STEP_TOO_LONG, longest_step);
+    let is_above_cap = |speed_mm_s: f64| speed_mm_s > limits.max_speed_mm_s;
+    let [transit, step] = [&[words_of_settings::TRANSIT_SPEED], &[words_of_settings::SEARCH_SPEED]];
+    check(is_above_cap(limits.transit_speed_mm_s), problem::TRANSIT_TOO_FAST, transit);
+    check(is_above_cap(limits.search_speed_mm_s), problem::SEARCH_TOO_FAST, step);
     // Settings that were kept may be from a time when more was allowed.
-    check(limits.max_rotation_speed_deg_s > MOST_ROTATION_SPEED_DEG_S, problem::TURNS_TOO_FAST);
+    let turns_too_fast = limits.max_rotation_speed_deg_s > MOST_ROTATION_SPEED_DEG_S;
+    check(turns_too_fast, problem::TURNS_TOO_FAST, &[words_of_settings::TURN_CAP]);
     if let Some(workspace) = &limits.workspace {
         let sides = || workspace.min_mm.iter().zip(&workspace.max_mm);
         let is_empty = sides().any(|(min, max)| min >= max);
-        check(is_empty, problem::EMPTY_BOX);
+        check(is_empty, problem::EMPTY_BOX, BOX);
         let is_outside = robot.is_some_and(|report| {
             let place = report.base_from_flange.translation_mm();
             place.iter().zip(sides()).any(|(place, (min, max))| place < min || place > max)
         });
-        check(!is_empty && is_outside, problem::OUTSIDE_BOX);
+        check(!is_empty && is_outside, problem::OUTSIDE_BOX, BOX);
     }
     found
 }

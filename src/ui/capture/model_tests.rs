@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::*;
+use crate::app::cell::Activity;
 use crate::app::cell::{LinkView, LiveProfile, Proposal, ReplayView, RoughMounting, RunView};
 use crate::device::search::CurveEstimate;
 use crate::device::{
@@ -14,6 +15,8 @@ use crate::fit::{ArcOptions, ArcRefusal, extract_arc};
 use crate::geometry::{PoseConvention, Profile, Vec3};
 use crate::plan::PlannedStation;
 use crate::session::{self, samples};
+use crate::ui::capture::memory::CellMemory;
+use crate::ui::capture::next::{Deed, next};
 
 fn report(readiness: Readiness) -> RobotReport {
     RobotReport {
@@ -87,7 +90,9 @@ const RUN: RunView = RunView { num_done: 2, num_failed: 0, num_stations: 8, is_p
 
 /// What the primary button does at a moment.
 fn deed(cell: &CellView, session: Option<&Session>, memory: &CellMemory) -> Option<Deed> {
-    next(&View { cell, session, has_solution: false }, memory).button.map(|(_, deed)| deed)
+    next(&View { cell, session, has_solution: false, outlook: None, has_other_mounting: false }, memory)
+        .button
+        .map(|(_, deed)| deed)
 }
 
 fn command(command: impl Into<Option<CellCommand>>) -> Option<Deed> {
@@ -99,7 +104,7 @@ fn from_nothing_to_a_compared_result_there_is_one_way() {
     let (nothing, known) = (CellMemory::default(), with_addresses());
     let empty = empty_session();
     let off = CellView::default();
-    assert_eq!(deed(&off, None, &nothing), command(CellCommand::Practise));
+    assert_eq!(deed(&off, None, &nothing), Some(Deed::Enter(words::ROBOT_HOST)));
     let robot = known.robot_to_connect().expect("given");
     assert_eq!(deed(&off, None, &known), command(CellCommand::ConnectRobot(robot)));
     let robot_only = CellView { sensor: LinkView::default(), ..connected(Readiness::Ready) };
@@ -127,16 +132,13 @@ fn what_only_a_person_can_do_has_no_button_but_words() {
     let not_remote = Readiness::NotReady { found: "T1 mode".to_owned(), remedy: "turn the key to AUTO" };
     let no_arc = CellView { live: Some(live(false)), ..connected(Readiness::Ready) };
     let no_profile = CellView { live: None, ..connected(Readiness::Ready) };
-    let error = DeviceError::Stopped { device: "Robot" };
-    let failed = LinkState::Failed { error, retry_in: Some(Duration::from_secs(4)) };
-    let broken = CellView { robot: LinkView { state: failed, ..LinkView::default() }, ..connected(Readiness::Ready) };
-    for (cell, part) in [
-        (connected(not_remote), "Turn the key to AUTO"),
-        (no_arc, words::now::JOG),
-        (no_profile, words::now::PROFILE),
-        (broken, "stopped on request"),
-    ] {
-        let next = next(&View { cell: &cell, session: Some(&empty), has_solution: false }, &memory);
+    for (cell, part) in
+        [(connected(not_remote), "Turn the key to AUTO"), (no_arc, words::now::JOG), (no_profile, words::now::PROFILE)]
+    {
+        let next = next(
+            &View { cell: &cell, session: Some(&empty), has_solution: false, outlook: None, has_other_mounting: false },
+            &memory,
+        );
         assert_eq!(next.button, None, "{}", next.sentence);
         assert!(next.sentence.contains(part), "{}", next.sentence);
     }
@@ -147,7 +149,8 @@ fn a_robot_that_only_reads_is_jogged_and_captured() {
     let cell = connected(Readiness::ReadOnly);
     let empty = empty_session();
     assert_eq!(deed(&cell, Some(&empty), &with_addresses()), command(CellCommand::CaptureStation));
-    let view = View { cell: &cell, session: Some(&empty), has_solution: false };
+    let view =
+        View { cell: &cell, session: Some(&empty), has_solution: false, outlook: None, has_other_mounting: false };
     assert_eq!(refusal(&view, &CellCommand::CaptureStation), None);
     assert_eq!(refusal(&view, &CellCommand::Arm(true)), Some(words::ROBOT_ONLY_READS));
     assert_eq!(refusal(&view, &CellCommand::FindLargestArc), Some(words::ROBOT_ONLY_READS));
@@ -167,7 +170,8 @@ fn a_proposal_is_accepted_only_where_it_can_be_gone_to() {
     assert_eq!(deed(&cell(Some(too_far), true), Some(&empty), &memory), command(CellCommand::SkipProposal));
     let asking = CellView { run: Some(RunView { is_asking: true, ..RUN }), ..cell(None, true) };
     assert_eq!(deed(&asking, Some(&empty), &memory), command(CellCommand::AcceptProposal));
-    let view = View { cell: &asking, session: Some(&empty), has_solution: false };
+    let view =
+        View { cell: &asking, session: Some(&empty), has_solution: false, outlook: None, has_other_mounting: false };
     assert_eq!(refusal(&view, &CellCommand::AcceptProposal), None, "the run waits for it");
     assert_eq!(refusal(&view, &CellCommand::FindLargestArc), Some(words::ROUTINE_RUNS));
     assert!(is_running(&asking), "stop ends a run that asks");
@@ -178,14 +182,103 @@ fn a_replay_goes_on_or_is_ended() {
     let session = sample();
     let replay = ReplayView { station_idx: 1, capture_idx: 4, is_over: false };
     let cell = CellView { replay: Some(replay), activity: Activity::Thinking, ..CellView::default() };
-    assert_eq!(deed(&cell, Some(&session), &CellMemory::default()), None);
+    assert_eq!(deed(&cell, Some(&session), &CellMemory::default()), command(CellCommand::EndReplay));
     let cell = CellView { replay: Some(ReplayView { is_over: true, ..replay }), ..CellView::default() };
     assert_eq!(deed(&cell, Some(&session), &CellMemory::default()), command(CellCommand::EndReplay));
-    let view = View { cell: &CellView::default(), session: Some(&session), has_solution: false };
+    let view = View {
+        cell: &CellView::default(),
+        session: Some(&session),
+        has_solution: false,
+        outlook: None,
+        has_other_mounting: false,
+    };
     assert_eq!(refusal(&view, &CellCommand::StartReplay), None);
     let empty = empty_session();
     let view = View { session: Some(&empty), ..view };
     assert_eq!(refusal(&view, &CellCommand::StartReplay), Some(words::NO_PROFILES));
+}
+
+#[test]
+fn a_broken_link_is_tried_again_at_once_and_told_of_in_one_place() {
+    let error = DeviceError::Stopped { device: "Robot" };
+    let failed = LinkState::Failed { error: error.clone(), retry_in: Some(Duration::from_secs(4)) };
+    let ready = connected(Readiness::Ready);
+    let setup = with_addresses().robot_to_connect();
+    let robot = LinkView { state: failed.clone(), setup: setup.clone(), ..LinkView::default() };
+    let sensor_setup = with_addresses().sensor_to_connect();
+    let sensor = LinkView { state: failed, setup: sensor_setup.clone(), ..LinkView::default() };
+    for (cell, expected) in [
+        (CellView { robot: robot.clone(), ..ready.clone() }, setup.map(CellCommand::ConnectRobot)),
+        (CellView { sensor, ..ready.clone() }, sensor_setup.map(CellCommand::ConnectSensor)),
+        (CellView { robot, is_practice: true, ..ready }, None),
+    ] {
+        let view = View { cell: &cell, session: None, has_solution: false, outlook: None, has_other_mounting: false };
+        let next = next(&view, &with_addresses());
+        assert_eq!(next.button.map(|(_, deed)| deed), expected.map(Deed::Cell));
+        assert!(!next.sentence.contains(&error.to_string()), "{}", next.sentence);
+    }
+}
+
+#[test]
+fn a_mounting_of_another_robot_is_asked_about_before_anything_goes_by_it() {
+    let mut memory = with_addresses();
+    let robot = |kind, host: &str| RobotSetup { kind, endpoint: Endpoint { host: host.to_owned(), port: 1 } };
+    assert!(!memory.has_mounting_of_other(&robot(RobotKind::Bridge, "a")), "nobody knows whose it is");
+    memory.mounting_of = Some(robot(RobotKind::FanucMappdk, "a"));
+    for (other, is_other) in [
+        (robot(RobotKind::FanucMappdk, "a "), false),
+        (robot(RobotKind::FanucPage, "a"), false),
+        (robot(RobotKind::FanucMappdk, "b"), true),
+        (robot(RobotKind::UniversalRobots, "a"), true),
+    ] {
+        assert_eq!(memory.has_mounting_of_other(&other), is_other, "{other:?}");
+    }
+    let (cell, empty) = (armed(mounted(connected(Readiness::Ready))), empty_session());
+    let view =
+        View { cell: &cell, session: Some(&empty), has_solution: false, outlook: None, has_other_mounting: true };
+    assert!(!view.knows_mounting());
+    let next = next(&view, &memory);
+    assert_eq!(next.button.map(|(_, deed)| deed), Some(Deed::KeepMounting));
+    for asked in [CellCommand::FindLargestArc, CellCommand::StartRun { num_stations: 3 }, CellCommand::ProposeStation] {
+        assert_eq!(refusal(&view, &asked), Some(words::OTHER_MOUNTING), "{asked:?}");
+    }
+    assert_eq!(refusal(&View { has_solution: true, ..view }, &CellCommand::ProposeStation), None);
+}
+
+#[test]
+fn the_switch_is_remembered_after_a_run() {
+    let empty = empty_session();
+    let ready = armed(mounted(connected(Readiness::Ready)));
+    let over = RunView { num_done: 8, ..RUN };
+    for (run, is_armed, reminds) in
+        [(Some(RUN), true, true), (Some(over), true, true), (Some(over), false, false), (None, true, false)]
+    {
+        let cell = CellView { is_armed, run, ..ready.clone() };
+        let view =
+            View { cell: &cell, session: Some(&empty), has_solution: false, outlook: None, has_other_mounting: false };
+        let next = next(&view, &with_addresses());
+        let disarm = Deed::Cell(CellCommand::Arm(false));
+        assert_eq!(next.other.is_some_and(|(_, deed)| deed == disarm), reminds, "{run:?}");
+        assert_eq!(next.sentence.contains("armed."), reminds, "{}", next.sentence);
+    }
+}
+
+#[test]
+fn the_outlook_counts_the_planned_stations_up_to_good() {
+    let station = |std_mm| PlannedStation { workspace_point_std_mm: Some(std_mm), ..proposal(None).station };
+    let plan = |now_mm, then: &[f64]| Plan {
+        workspace_point_std_mm: Some(now_mm),
+        stations: then.iter().copied().map(station).collect(),
+    };
+    assert_eq!(Outlook::new(&plan(0.09, &[0.08])), None, "good already");
+    let outlook = Outlook::new(&plan(0.13, &[0.12, 0.11, 0.1, 0.09])).expect("not good yet");
+    assert_eq!(outlook.num_to_good, Some(3));
+    // Four stations bring 25 per mm² to 50, so twelve bring them to the hundred that make 0.1 mm.
+    let beyond = |then: &[f64]| Outlook::new(&plan(0.2, then)).expect("not good yet").num_to_good;
+    assert_eq!(beyond(&[0.19, 0.17, 0.155, f64::sqrt(0.02)]), Some(12));
+    for hopeless in [&[][..], &[0.2], &[0.21], &[0.1999]] {
+        assert_eq!(beyond(hopeless), None, "{hopeless:?}");
+    }
 }
 
 #[test]
@@ -203,6 +296,7 @@ fn wrong_settings_are_told_and_keep_the_robot_still() {
     let expected = [
         problem::NO_DIRECTION,
         problem::LITTLE_TRAVEL,
+        problem::COARSE_IS_FINER,
         problem::STEP_BEYOND_BALL,
         problem::STEP_TOO_LONG,
         problem::TRANSIT_TOO_FAST,
@@ -210,13 +304,17 @@ fn wrong_settings_are_told_and_keep_the_robot_still() {
         problem::TURNS_TOO_FAST,
         problem::EMPTY_BOX,
     ];
-    assert_eq!(problems(&wrong, 15.0, None), expected);
+    let told = |settings, robot| -> Vec<_> {
+        problems(settings, 15.0, robot).into_iter().map(|problem| problem.sentence).collect()
+    };
+    assert_eq!(told(&wrong, None), expected);
     let mut boxed = usual;
     boxed.limits.workspace = Some(WorkspaceBox { min_mm: [0.0; 3], max_mm: [100.0; 3] });
-    assert_eq!(problems(&boxed, 15.0, Some(&report(Readiness::Ready))), [problem::OUTSIDE_BOX]);
+    assert_eq!(told(&boxed, Some(&report(Readiness::Ready))), [problem::OUTSIDE_BOX]);
     let cell = CellView { settings: boxed, ..armed(connected(Readiness::Ready)) };
     let empty = empty_session();
-    let view = View { cell: &cell, session: Some(&empty), has_solution: false };
+    let view =
+        View { cell: &cell, session: Some(&empty), has_solution: false, outlook: None, has_other_mounting: false };
     assert_eq!(refusal(&view, &CellCommand::FindLargestArc), Some(words::SETTINGS_WRONG));
     assert_eq!(next(&view, &with_addresses()).button, None);
 }
@@ -333,7 +431,7 @@ fn setups_need_an_address_or_a_folder() {
         ..CellView::default()
     };
     // A link that was let go does not count as connected, whatever it was connected to.
-    assert_eq!(deed(&cell, None, &CellMemory::default()), command(CellCommand::Practise));
+    assert_eq!(deed(&cell, None, &CellMemory::default()), Some(Deed::Enter(words::ROBOT_HOST)));
 }
 
 #[test]
@@ -343,7 +441,10 @@ fn a_capture_from_a_watched_folder_asks_for_a_file() {
         [(None, words::SETTLING), (Some(std::path::PathBuf::from("scans")), words::SETTLING_BY_FOLDER)]
     {
         let cell = CellView { activity: Activity::Settling, watched_folder, ..connected(Readiness::Ready) };
-        let next = next(&View { cell: &cell, session: Some(&empty), has_solution: false }, &memory);
+        let next = next(
+            &View { cell: &cell, session: Some(&empty), has_solution: false, outlook: None, has_other_mounting: false },
+            &memory,
+        );
         assert_eq!(next.sentence, expected);
     }
 }

@@ -3,11 +3,11 @@
 use std::rc::Rc;
 use std::sync::Arc;
 
-use egui::{Rect, ScrollArea, Ui, UiBuilder};
+use egui::{Key, Modifiers, Rect, ScrollArea, Ui, UiBuilder};
 
 use crate::app::Command;
 use crate::app::cell::{CellCommand, CellSettings};
-use crate::device::SearchReport;
+use crate::device::{LinkState, RobotSetup, SearchReport};
 use crate::geometry::{Profile, Vec3};
 use crate::session::Target;
 use crate::ui::actions::Action;
@@ -15,9 +15,11 @@ use crate::ui::arcs::model::ProfileModel;
 use crate::ui::rail::Step;
 use crate::ui::{PanelContext, theme};
 
+use super::fields::Fields;
 use super::memory::CellMemory;
-use super::model::{Deed, SearchCurve, View};
+use super::model::{SearchCurve, View};
 use super::mounting::MountingDraft;
+use super::next::Deed;
 use super::{connection, live, machine, settings, strip, work};
 
 /// Width of the column at the left, points.
@@ -39,6 +41,8 @@ pub struct CaptureState {
     pub(super) is_curve_fitted: bool,
     /// Radius of the ball of a new session, mm.
     pub(super) radius_mm: f64,
+    /// What was typed into fields for numbers, and not taken.
+    pub(super) fields: Fields,
     /// The mounting that is being typed.
     pub(super) mounting: MountingDraft,
     /// Whether the mounting is to be seen in the next frame.
@@ -56,6 +60,7 @@ impl Default for CaptureState {
             curve: None,
             is_curve_fitted: true,
             radius_mm: 15.0,
+            fields: Fields::default(),
             mounting: MountingDraft::default(),
             reveals_mounting: false,
             seen_proposal: None,
@@ -83,10 +88,34 @@ impl Desk<'_> {
         }
     }
 
+    /// The robot that is connected, or would be.
+    pub fn robot(&self) -> Option<RobotSetup> {
+        let link = &self.view.cell.robot;
+        let connected = link.setup.clone().filter(|_| link.state != LinkState::Off);
+        connected.or_else(|| self.memory.robot_to_connect())
+    }
+
+    /// Whose mounting it is that is remembered: that of the robot that was there when it was given, or that came first.
+    fn note_mounting(&mut self) {
+        let cell = self.view.cell;
+        if cell.is_practice {
+            return;
+        }
+        if cell.settings.mounting.is_none() {
+            self.memory.mounting_of = None;
+        } else if self.memory.mounting_of.is_none() && cell.robot.state == LinkState::Ready {
+            self.memory.mounting_of.clone_from(&cell.robot.setup);
+        }
+        let other = self.robot().filter(|robot| self.memory.has_mounting_of_other(robot));
+        self.view.has_other_mounting = other.is_some();
+    }
+
     pub fn carry_out(&mut self, deed: Deed) {
         match deed {
             Deed::Cell(command) => self.ask(command),
             Deed::NewSession => self.commands.push(Command::NewSession(Target::ball(self.state.radius_mm))),
+            Deed::Enter(field) => self.state.fields.ask_for(field),
+            Deed::KeepMounting => self.memory.mounting_of = self.robot(),
             Deed::ShowMounting => self.state.reveals_mounting = true,
             Deed::Compare => self.actions.push(Action::GoTo(Step::Compare)),
         }
@@ -109,6 +138,12 @@ pub fn show_view(
     actions: &mut Vec<Action>,
 ) {
     let mut desk = Desk { view, memory, state, commands, actions };
+    desk.note_mounting();
+    let is_typing = ui.ctx().text_edit_focused();
+    if view.cell.replay.is_some() && !is_typing && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape))
+    {
+        desk.ask(CellCommand::EndReplay);
+    }
     ui.spacing_mut().item_spacing.y = theme::GAP;
     strip::show(ui, &mut desk);
     let area = ui.available_rect_before_wrap();

@@ -1,8 +1,8 @@
 //! The safety strip: what to do next, the arm switch with the limits that hold, and stop.
 
 use egui::{
-    Align, Color32, CornerRadius, DragValue, Frame, Label, Layout, Margin, Role, Sense, Stroke, StrokeKind, Ui,
-    UiBuilder, WidgetInfo, vec2,
+    Align, Color32, CornerRadius, Frame, Label, Layout, Margin, Role, Sense, Stroke, StrokeKind, Ui, UiBuilder,
+    WidgetInfo, vec2,
 };
 
 use crate::app::cell::CellCommand;
@@ -11,8 +11,9 @@ use crate::text::capture as words;
 use crate::ui::widgets::fixed;
 use crate::ui::{theme, widgets};
 
-use super::fields::{filled_button, number};
-use super::model::{self, Deed, Lamp};
+use super::fields::{Number, TALL, filled_button};
+use super::model::{self, Lamp};
+use super::next::{self, Deed};
 use super::panel::Desk;
 
 /// Height of the strip, points.
@@ -23,6 +24,8 @@ const BUTTON_HEIGHT: f32 = 48.0;
 const SWITCH_WIDTH: f32 = 236.0;
 /// Width of the stop button, points.
 const STOP_WIDTH: f32 = 112.0;
+/// Width of the field for a ball's radius, points.
+const RADIUS_WIDTH: f32 = 96.0;
 /// Red of the stop button in both themes.
 const STOP_RED: Color32 = Color32::from_rgb(0xc6, 0x28, 0x1e);
 
@@ -39,7 +42,7 @@ pub fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
             row.spacing_mut().item_spacing.x = theme::GAP;
             stop(&mut row, desk);
             switch(&mut row, desk);
-            row.with_layout(Layout::left_to_right(Align::Center), |ui| next(ui, desk));
+            row.with_layout(Layout::left_to_right(Align::Center), |ui| next_thing(ui, desk));
         },
     );
 }
@@ -105,8 +108,8 @@ fn switch(ui: &mut Ui, desk: &mut Desk<'_>) {
 }
 
 /// What to do next.
-fn next(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let next = model::next(&desk.view, desk.memory);
+fn next_thing(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let next = next::next(&desk.view, desk.memory);
     let mut chosen = None;
     if let Some((label, deed)) = next.button {
         let name = words::next_button(label);
@@ -116,9 +119,15 @@ fn next(ui: &mut Ui, desk: &mut Desk<'_>) {
         }
         if deed == Deed::NewSession {
             let radius = &mut desk.state.radius_mm;
-            let field = DragValue::new(radius).range(0.5..=500.0).speed(0.1).max_decimals(4).prefix("R ").suffix(" mm");
-            number(ui, words::BALL_RADIUS, words::BALL_RADIUS_HINT, field);
+            let field = Number::new(radius, 0.5..=500.0, " mm", 0.1).decimals(4).prefix("R ").width(RADIUS_WIDTH);
+            desk.state.fields.number(ui, words::BALL_RADIUS, words::BALL_RADIUS_HINT, field);
+            desk.state.fields.remarks(ui, |name| name == words::BALL_RADIUS);
         }
+    }
+    if let Some((label, deed)) = next.other
+        && ui.add(egui::Button::new(label).min_size(vec2(0.0, TALL))).clicked()
+    {
+        chosen = Some(deed);
     }
     let is_failed = model::lamp(&desk.view.cell.robot.state).0 == Lamp::Bad
         || model::lamp(&desk.view.cell.sensor.state).0 == Lamp::Bad;

@@ -1,22 +1,27 @@
 //! What is done with the cell: this station, the next one, a whole run, and the replay of a session.
 
-use egui::{Align, DragValue, Frame, Label, Layout, Margin, ProgressBar, Ui, UiBuilder, vec2};
+use egui::{Align, Frame, Label, Layout, Margin, ProgressBar, Ui, UiBuilder, vec2};
 
 use crate::app::cell::{CellCommand, Proposal, StationRoutine};
+use crate::calibrate::verdict::GOOD_UP_TO_MM;
 use crate::device::{MotionRefusal, RoutineEnd};
 use crate::text::capture as words;
 use crate::text::cell::reason_of_end;
+use crate::ui::figures::std_text;
 use crate::ui::theme;
 use crate::ui::widgets::{card_with_height, fixed};
 
 use super::connection::pose_line;
-use super::fields::{hint, number_row, remark, tall_button};
+use super::fields::{Number, hint, remark, tall_button};
 use super::model::{self, refusal};
+use super::next;
 use super::orientation;
 use super::panel::Desk;
 
 /// Height of each card, points.
 const HEIGHT: f32 = 212.0;
+/// Width of the field for the number of stations, points.
+const STATIONS_WIDTH: f32 = 72.0;
 /// Side of the picture of an orientation, points.
 const PICTURE_SIZE: f32 = 104.0;
 /// From this width on the cards stand side by side.
@@ -30,11 +35,11 @@ pub fn height(width: f32) -> f32 {
 /// Shows the cards.
 pub fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     if ui.available_width() >= SIDE_BY_SIDE_FROM {
-        row(ui, desk, &[(station, 0.26), (next, 0.4), (run, 0.34)]);
+        row(ui, desk, &[(station, 0.26), (next_station, 0.4), (run, 0.34)]);
     } else {
         row(ui, desk, &[(station, 0.46), (run, 0.54)]);
         let top = ui.cursor().top();
-        next(ui, desk);
+        next_station(ui, desk);
         // A new proposal is to be looked at before it is gone to.
         let proposal = desk.view.cell.proposal.as_ref();
         let proposed = proposal.map(|proposal| proposal.station.base_from_flange.translation_mm());
@@ -98,6 +103,9 @@ fn station(ui: &mut Ui, desk: &mut Desk<'_>) {
                     );
                 });
                 hint(ui, &words::num_stations(num_stations));
+                if let Some(outlook) = desk.view.outlook.filter(|_| !model::is_running(desk.view.cell)) {
+                    hint(ui, &words::outlook(&std_text(outlook.std_mm), outlook.num_to_good, GOOD_UP_TO_MM));
+                }
                 if let Some(std_mm) = desk.view.cell.repeat_std_mm {
                     hint(ui, &words::repeat_noise(&fixed(std_mm * 1000.0, 1)));
                 }
@@ -117,7 +125,7 @@ fn station(ui: &mut Ui, desk: &mut Desk<'_>) {
     );
 }
 
-fn next(ui: &mut Ui, desk: &mut Desk<'_>) {
+fn next_station(ui: &mut Ui, desk: &mut Desk<'_>) {
     card_with_height(ui, words::NEXT_STATION, HEIGHT, |_| {}, |ui| body(ui, |ui| proposal(ui, desk)));
 }
 
@@ -184,10 +192,12 @@ fn run(ui: &mut Ui, desk: &mut Desk<'_>) {
 
 fn run_settings(ui: &mut Ui, desk: &mut Desk<'_>) {
     ui.spacing_mut().item_spacing.y = 2.0;
-    let field = DragValue::new(&mut desk.memory.num_stations.0).range(1..=60).speed(0.05);
-    number_row(ui, words::RUN_STATIONS, "", field);
+    let field = Number::new(&mut desk.memory.num_stations.0, 1.0..=60.0, "", 0.05).width(STATIONS_WIDTH);
+    desk.state.fields.row(ui, words::RUN_STATIONS, "", field);
+    desk.state.fields.remarks(ui, |name| name == words::RUN_STATIONS);
     let mut settings = desk.view.cell.settings;
     ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = theme::GAP;
         for (routine, name) in
             [(StationRoutine::LargestArc, words::LARGEST_ARC), (StationRoutine::FixedPoint, words::FIXED_POINT)]
         {
@@ -233,7 +243,7 @@ fn run_under_way(ui: &mut Ui, desk: &mut Desk<'_>) {
 
 fn replay(ui: &mut Ui, desk: &mut Desk<'_>) {
     let is_over = desk.view.cell.replay.is_some_and(|replay| replay.is_over);
-    let sentence = if is_over { Some(words::REPLAY_OVER.to_owned()) } else { model::replay_words(&desk.view) };
+    let sentence = if is_over { Some(words::REPLAY_OVER.to_owned()) } else { next::replay_words(&desk.view) };
     ui.add(Label::new(sentence.unwrap_or_default()).wrap());
     ui.allocate_space(vec2(0.0, 4.0));
     ask(ui, desk, words::END_REPLAY, words::END_REPLAY, "", CellCommand::EndReplay);

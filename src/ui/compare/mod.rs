@@ -8,6 +8,6 @@ mod panel;
 mod paper;
 mod published;
 mod scatter;
-mod table;
+pub(in crate::ui) mod table;
 
 pub use panel::{CompareState, show};

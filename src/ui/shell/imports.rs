@@ -29,6 +29,7 @@ impl Shell {
             Purpose::Open => self.request(Command::to_read(paths)),
             Purpose::ImportFiles | Purpose::ImportFolder | Purpose::AddSession => self.request(Command::Import(paths)),
             Purpose::Save => self.apply_to_each(paths, Command::SaveAs),
+            Purpose::AddFurther => self.apply_to_each(paths, Command::AddFurther),
             Purpose::ExportPoses => self.apply_to_each(paths, Command::ExportPoses),
             Purpose::ExportProfiles => self.apply_to_each(paths, Command::ExportProfiles),
             Purpose::WatchedFolder => {

@@ -342,6 +342,7 @@ impl Shell {
             Action::Import => self.ask_for_paths(Purpose::ImportFiles),
             Action::ImportFolder => self.ask_for_paths(Purpose::ImportFolder),
             Action::AddSession => self.ask_for_paths(Purpose::AddSession),
+            Action::AddFurther => self.ask_for_paths(Purpose::AddFurther),
             Action::ExportPoses => self.ask_for_paths(Purpose::ExportPoses),
             Action::ExportProfiles => self.ask_for_paths(Purpose::ExportProfiles),
             Action::ChooseWatchedFolder => self.ask_for_paths(Purpose::WatchedFolder),

@@ -1,10 +1,11 @@
 //! The start page, and the overview's column for opening another session.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use egui::{
-    Align, Align2, CornerRadius, FontSelection, Key, Layout, Rect, Role, ScrollArea, Sense, Stroke, TextEdit,
-    TextStyle, TextWrapMode, Ui, WidgetInfo, WidgetText, pos2, vec2,
+    Align, Align2, CornerRadius, FontSelection, Galley, Key, Layout, Rect, Role, ScrollArea, Sense, Stroke, TextEdit,
+    TextStyle, TextWrapMode, Ui, Vec2, WidgetInfo, WidgetText, pos2, vec2,
 };
 
 use crate::app::Command;
@@ -14,7 +15,7 @@ use crate::text::document as document_words;
 use crate::text::shell as shell_words;
 use crate::text::start as words;
 use crate::ui::actions::Action;
-use crate::ui::widgets::{card, primary_button, symbol_button};
+use crate::ui::widgets::{FromTop, card, primary_button, symbol_button};
 use crate::ui::{PanelContext, import, theme};
 
 use super::form::FormState;
@@ -26,8 +27,12 @@ use super::{overview, paint};
 const MIN_CARD_WIDTH: f32 = 216.0;
 /// Height of a card's picture, points.
 const PICTURE_HEIGHT: f32 = 96.0;
-/// Height of a card, points: picture, name, two lines of lesson, sizes.
-const CARD_HEIGHT: f32 = PICTURE_HEIGHT + 112.0;
+/// From a card's picture to its name, from the name to the lesson, and below the sizes, points.
+const NAME_AT: f32 = 10.0;
+const LESSON_AT: f32 = NAME_AT + 22.0;
+const SIZES_UP: f32 = 10.0;
+/// Least gap between the lesson and the sizes, points.
+const LESSON_GAP: f32 = 6.0;
 /// Width of the start page's contents at most, points.
 const MAX_PAGE_WIDTH: f32 = 1160.0;
 
@@ -46,6 +51,7 @@ pub struct StartState {
     are_there: Vec<bool>,
     form: FormState,
     offers: OffersState,
+    from_top: FromTop,
 }
 
 impl StartState {
@@ -79,9 +85,10 @@ impl StartState {
         self.looked_for.clear();
     }
 
-    /// Another document is on the bench.
+    /// Another document is on the bench, and another page in sight.
     pub fn forget_typing(&mut self) {
         self.form = FormState::default();
+        self.from_top = FromTop::default();
     }
 
     /// Whether samples are still being read.
@@ -101,7 +108,8 @@ impl StartState {
 pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut StartState, recent_files: &mut Vec<PathBuf>) {
     // Room for the scroll bar beside the cards, not over them.
     ui.spacing_mut().scroll.floating_allocated_width = 8.0;
-    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+    let area = ScrollArea::vertical().id_salt("start").auto_shrink(false);
+    state.from_top.apply(area).show(ui, |ui| {
         if let Some(document) = context.workbench.document() {
             offers::recovery(ui, context, &mut state.offers);
             overview::show(ui, document, context, &mut state.form);
@@ -242,11 +250,16 @@ fn samples_grid(ui: &mut Ui, context: &mut PanelContext<'_>, state: &StartState)
     let num_columns = (2..=4).rev().find(|columns| fits(width, *columns)).unwrap_or(1);
     let card_width = (width - gaps(num_columns)) / count_points(num_columns);
     let samples: Vec<usize> = (0..samples::ALL.len()).collect();
+    // As high as the longest lesson needs, all of them.
+    let lessons: Vec<Arc<Galley>> = samples.iter().map(|&sample_idx| lesson_of(ui, card_width, sample_idx)).collect();
+    let longest = lessons.iter().map(|lesson| lesson.size().y).fold(0.0, f32::max);
+    let sizes_height = ui.text_style_height(&TextStyle::Small) + SIZES_UP;
+    let size = vec2(card_width, (PICTURE_HEIGHT + LESSON_AT + longest + LESSON_GAP + sizes_height).ceil());
     ui.spacing_mut().item_spacing = vec2(theme::GAP, theme::GAP);
     for row in samples.chunks(num_columns) {
         ui.horizontal(|ui| {
             for &sample_idx in row {
-                sample_card(ui, card_width, context, state, sample_idx);
+                sample_card(ui, size, &lessons[sample_idx], context, state, sample_idx);
             }
         });
     }
@@ -270,10 +283,28 @@ fn round_points(value: f32) -> i8 {
     value.round() as i8
 }
 
-fn sample_card(ui: &mut Ui, width: f32, context: &mut PanelContext<'_>, state: &StartState, sample_idx: usize) {
+/// What a sample teaches, wrapped to its card.
+fn lesson_of(ui: &Ui, card_width: f32, sample_idx: usize) -> Arc<Galley> {
+    let lesson = samples::ALL.get(sample_idx).map_or("", |sample| words::sample_lesson(sample.file_name).1);
+    WidgetText::from(theme::dim(ui, lesson)).into_galley(
+        ui,
+        Some(TextWrapMode::Wrap),
+        card_width - 2.0 * theme::GAP,
+        FontSelection::Style(TextStyle::Body),
+    )
+}
+
+fn sample_card(
+    ui: &mut Ui,
+    size: Vec2,
+    lesson: &Arc<Galley>,
+    context: &mut PanelContext<'_>,
+    state: &StartState,
+    sample_idx: usize,
+) {
     let Some(sample) = samples::ALL.get(sample_idx) else { return };
-    let (name, lesson) = words::sample_lesson(sample.file_name);
-    let (rect, response) = ui.allocate_exact_size(vec2(width, CARD_HEIGHT), Sense::click());
+    let (name, _) = words::sample_lesson(sample.file_name);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, words::open_sample(name)));
     if ui.is_rect_visible(rect) {
         let is_hot = response.hovered() || response.has_focus();
@@ -283,14 +314,21 @@ fn sample_card(ui: &mut Ui, width: f32, context: &mut PanelContext<'_>, state: &
             None if state.is_reading() => words::READING.to_owned(),
             None => String::new(),
         };
-        paint_card(ui, rect, is_hot, preview, [name, lesson, &sizes]);
+        paint_card(ui, rect, is_hot, preview, lesson, [name, &sizes]);
     }
     if response.clicked() {
         context.commands.push(Command::OpenSample(sample_idx));
     }
 }
 
-fn paint_card(ui: &Ui, rect: Rect, is_hot: bool, preview: Option<&SamplePreview>, [name, lesson, sizes]: [&str; 3]) {
+fn paint_card(
+    ui: &Ui,
+    rect: Rect,
+    is_hot: bool,
+    preview: Option<&SamplePreview>,
+    lesson: &Arc<Galley>,
+    [name, sizes]: [&str; 2],
+) {
     let palette = theme::palette(ui);
     let painter = ui.painter();
     let border = Stroke::new(1.0, if is_hot { palette.accent } else { palette.hairline });
@@ -300,17 +338,10 @@ fn paint_card(ui: &Ui, rect: Rect, is_hot: bool, preview: Option<&SamplePreview>
     paint::picture(painter, picture, palette, preview);
     painter.hline(rect.x_range(), picture.bottom(), Stroke::new(1.0, palette.hairline));
     let left = rect.left() + theme::GAP;
-    let mut y = picture.bottom() + 10.0;
-    painter.text(pos2(left, y), Align2::LEFT_TOP, name, theme::strong_font(), palette.text);
-    y += 22.0;
-    let lesson = WidgetText::from(egui::RichText::new(lesson).color(palette.text_dim)).into_galley(
-        ui,
-        Some(TextWrapMode::Wrap),
-        rect.width() - 2.0 * theme::GAP,
-        FontSelection::Style(TextStyle::Body),
-    );
-    painter.galley(pos2(left, y), lesson, palette.text_dim);
+    let top = picture.bottom();
+    painter.text(pos2(left, top + NAME_AT), Align2::LEFT_TOP, name, theme::strong_font(), palette.text);
+    painter.galley(pos2(left, top + LESSON_AT), Arc::clone(lesson), palette.text_dim);
     let small = TextStyle::Small.resolve(ui.style());
-    let bottom = rect.bottom() - 10.0;
+    let bottom = rect.bottom() - SIZES_UP;
     painter.text(pos2(left, bottom), Align2::LEFT_BOTTOM, sizes, small, palette.text_dim);
 }

@@ -2,7 +2,11 @@
 
 mod cross_target;
 mod distances;
+mod histogram;
+mod marks;
+mod matrices;
 mod panel;
+mod space;
 mod stability;
 mod workpiece;
 

@@ -154,7 +154,7 @@ impl Workbench {
             _ if !is_of_this_pose(end) => self.end_by_trouble(),
             _ if is_complete => {
                 self.put_run_away();
-                self.notify_of_cell(NoticeKind::Done, words::run_done(num_done, num_failed));
+                self.notify_of_cell(NoticeKind::Done, words::run_done(num_done, num_failed, self.cell.armed.is_some()));
             }
             _ if num_in_a_row >= MOST_FAILED_IN_A_ROW => {
                 self.end_run(Some(words::failed_in_a_row(num_in_a_row)));
@@ -272,9 +272,11 @@ impl Workbench {
         };
         self.forget_proposal();
         self.put_run_away();
-        match reason {
-            Some(reason) => self.notify_of_cell(NoticeKind::Error, words::run_ended(num_done, num_stations, &reason)),
-            None => self.notify_of_stop(words::run_stopped(num_done, num_stations)),
+        if let Some(reason) = reason {
+            self.notify_of_cell(NoticeKind::Error, words::run_ended(num_done, num_stations, &reason));
+        } else {
+            let is_armed = self.cell.armed.is_some();
+            self.notify_of_stop(words::run_stopped(num_done, num_stations, is_armed));
         }
     }
 

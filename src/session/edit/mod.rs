@@ -2,18 +2,22 @@
 //!
 //! An edit is applied to a copy; what could not be saved and opened again is refused, so the document is always valid.
 
-use std::collections::{HashMap, HashSet};
-use std::hash::BuildHasher;
+mod further;
+mod labels;
+
 use std::path::Path;
 
 use nalgebra::UnitQuaternion;
 use thiserror::Error;
 
 use crate::calibrate::{Mount, SideChoice};
-use crate::geometry::{Base, Flange, PoseNotation, Transform, Vec3};
+use crate::geometry::{Base, Flange, Frame, PoseNotation, Sensor, Transform, Vec3};
 
 use super::limits::{self, Quantity};
-use super::model::{Capture, Edge, Published, Reading, Session, Station, Target, WrittenAngles};
+use super::model::{Capture, Edge, FurtherTarget, Known, Published, Reading, Session, Station, Target, WrittenAngles};
+
+pub use labels::free_label;
+use labels::{Labels, repeated};
 
 /// A capture's place in a session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -119,6 +123,27 @@ pub enum Edit {
     SwitchNotation(PoseNotation),
     /// The same numbers, read in another way: other poses.
     Reinterpret(PoseNotation),
+    /// What is known of the session's own target from elsewhere.
+    SetKnown(Known),
+    /// Roughly how the sensor is mounted.
+    SetRoughMounting(Option<Transform<Flange, Sensor>>),
+    /// A further target behind those that there are; a name that is taken gets a number behind it.
+    AddFurther(Box<FurtherTarget>),
+    /// The further target of this index taken out.
+    RemoveFurther(usize),
+    /// Another name for the further target of this index.
+    RenameFurther(usize, String),
+    /// What is known of the further target of this index from elsewhere.
+    SetFurtherKnown(usize, Known),
+    /// Whether stations of a further target take part.
+    UseFurtherStations {
+        /// Index of the further target.
+        further_idx: usize,
+        /// Indices of its stations.
+        station_idxs: Vec<usize>,
+        /// Whether they take part.
+        used: bool,
+    },
     /// Several changes in this order, as one: all of them or none.
     Several(Vec<Edit>),
 }
@@ -180,6 +205,37 @@ pub enum EditRefusal {
     /// An RGB-D session has a sequence in place of stations.
     #[error("found a session of an RGB-D camera, which has no stations")]
     NoStationsHere,
+    /// There is no such further target (any more).
+    #[error("found no further target {}; it may have been removed", further_idx + 1)]
+    NoSuchFurther {
+        /// Where it was looked for.
+        further_idx: usize,
+    },
+    /// There is no such station of a further target (any more).
+    #[error("found no station {} of the further target {name}; it may have been removed", station_idx + 1)]
+    NoSuchFurtherStation {
+        /// The further target.
+        name: String,
+        /// Where the station was looked for.
+        station_idx: usize,
+    },
+    /// A name that another further target has.
+    #[error("found the name \"{name}\" twice; each further target needs one of its own")]
+    NameTaken {
+        /// The name.
+        name: String,
+    },
+    /// A sequence cannot stand beside other targets.
+    #[error("found a sequence of an RGB-D camera as a further target, needed a target with stations")]
+    NoSequenceAsFurther,
+    /// Something known that a target of this kind does not have.
+    #[error("found {field}, which a target of this kind does not have; needed {needed}")]
+    NotKnownOfThis {
+        /// The field, as the file names it.
+        field: &'static str,
+        /// What such a target has.
+        needed: &'static str,
+    },
 }
 
 impl Edit {
@@ -205,6 +261,19 @@ impl Edit {
             Self::Setup(field) => set_field(session, field),
             Self::SwitchNotation(notation) => set_notation(session, notation),
             Self::Reinterpret(notation) => reinterpret(session, notation),
+            Self::SetKnown(known) => {
+                check_known(known, &session.target)?;
+                session.known = *known;
+                Ok(())
+            }
+            Self::SetRoughMounting(rough) => set_rough_mounting(session, rough.as_ref()),
+            Self::AddFurther(added) => further::add(session, added),
+            Self::RemoveFurther(idx) => further::remove(session, *idx),
+            Self::RenameFurther(idx, name) => further::rename(session, *idx, name),
+            Self::SetFurtherKnown(idx, known) => further::set_known(session, *idx, known),
+            Self::UseFurtherStations { further_idx, station_idxs, used } => {
+                further::use_stations(session, *further_idx, station_idxs, *used)
+            }
             Self::Several(edits) => edits.iter().try_for_each(|edit| edit.change(session)),
         }
     }
@@ -257,7 +326,7 @@ fn set_cells(session: &mut Session, cells: &[(Place, CellValue)]) -> Result<(), 
         }
     }
     // Labels may change places within one edit, so only the outcome counts.
-    match repeated_label(&session.stations) {
+    match repeated(session.stations.iter().map(|station| station.label.as_str())) {
         Some(label) => Err(EditRefusal::LabelTaken { label: label.to_owned() }),
         None => Ok(()),
     }
@@ -301,7 +370,7 @@ fn set_pose(
 }
 
 /// Of the two quaternions of a rotation the one with `w ≥ 0`, of unit norm as exactly as loading demands.
-fn as_saved(pose: &Transform<Base, Flange>) -> Transform<Base, Flange> {
+fn as_saved<Dst: Frame, Src: Frame>(pose: &Transform<Dst, Src>) -> Transform<Dst, Src> {
     let quaternion = pose.rotation().into_inner();
     let upper = if quaternion.w < 0.0 { -quaternion } else { quaternion };
     let rotation = if (upper.norm() - 1.0).abs() > limits::QUATERNION_NORM_EXACT {
@@ -312,30 +381,29 @@ fn as_saved(pose: &Transform<Base, Flange>) -> Transform<Base, Flange> {
     Transform::from_parts(pose.translation_mm(), rotation)
 }
 
-fn repeated_label(stations: &[Station]) -> Option<&str> {
-    let mut seen = HashSet::new();
-    stations.iter().map(|station| station.label.as_str()).find(|label| !seen.insert(*label))
-}
-
 fn insert(session: &mut Session, at: usize, stations: &[Station]) -> Result<(), EditRefusal> {
     if matches!(session.target, Target::Rgbd { .. }) {
         return Err(EditRefusal::NoStationsHere);
     }
     let at = at.min(session.stations.len());
-    let mut labels = Labels::of(session);
-    let needs_edge = session.target == Target::RightAnglePlate;
     let mut added = stations.to_vec();
-    for station in &mut added {
-        check_station(station)?;
-        station.label = labels.claim(&station.label);
-        if needs_edge {
-            need_edge(station);
-        }
-    }
+    check_stations(&mut added, &session.target, &mut Labels::of_stations(&session.stations))?;
     if !added.is_empty() {
         forget_printed_rows(session);
     }
     session.stations.splice(at..at, added);
+    Ok(())
+}
+
+/// Stations from elsewhere, such as an import, are looked at as a whole.
+fn check_stations(stations: &mut [Station], target: &Target, labels: &mut Labels) -> Result<(), EditRefusal> {
+    for station in stations {
+        check_station(station)?;
+        station.label = labels.claim(&station.label);
+        if *target == Target::RightAnglePlate {
+            need_edge(station);
+        }
+    }
     Ok(())
 }
 
@@ -347,7 +415,6 @@ fn need_edge(station: &mut Station) {
     }
 }
 
-/// A station from elsewhere, such as an import, is looked at as a whole.
 fn check_station(station: &mut Station) -> Result<(), EditRefusal> {
     check_label(&station.label)?;
     if station.captures.is_empty() {
@@ -368,51 +435,6 @@ fn append(session: &mut Session, station_idx: usize, capture: &Capture) -> Resul
     check_capture(&mut added)?;
     station.captures.push(added);
     Ok(())
-}
-
-/// The label itself, or the first number behind it (or after it, if it is a number) that is free.
-#[must_use]
-pub fn free_label<S: BuildHasher>(wanted: &str, taken: &HashSet<String, S>) -> String {
-    if !taken.contains(wanted) {
-        return wanted.to_owned();
-    }
-    other_labels(wanted, 0).map(|(_, label)| label).find(|label| !taken.contains(label)).unwrap_or_default()
-}
-
-/// The labels to try in place of one that is taken, each with its number: the numbers after it if it is one, otherwise the
-/// label with a number behind it; from `first` on.
-fn other_labels(wanted: &str, first: u32) -> impl Iterator<Item = (u32, String)> {
-    let number = wanted.parse::<u32>().ok();
-    let next = number.map_or(u32::MAX, |number| number.saturating_add(1).max(first));
-    let numbers = number.into_iter().flat_map(move |_| next..u32::MAX).map(|number| (number, number.to_string()));
-    numbers.chain((first.max(2)..u32::MAX).map(move |number| (number, format!("{wanted} ({number})"))))
-}
-
-/// The labels of a session while stations are added to it: many that are taken cost no more than each its turn.
-struct Labels {
-    taken: HashSet<String>,
-    /// Where the search goes on: for numbers, under an empty name, and for each other label.
-    next: HashMap<String, u32>,
-}
-
-impl Labels {
-    fn of(session: &Session) -> Self {
-        Self { taken: session.stations.iter().map(|station| station.label.clone()).collect(), next: HashMap::new() }
-    }
-
-    /// The label itself, or another that is free; it is taken then.
-    fn claim(&mut self, wanted: &str) -> String {
-        if self.taken.insert(wanted.to_owned()) {
-            return wanted.to_owned();
-        }
-        let name = if wanted.parse::<u32>().is_ok() { "" } else { wanted };
-        let first = self.next.get(name).copied().unwrap_or_default();
-        let found = other_labels(wanted, first).find(|(_, label)| !self.taken.contains(label));
-        let (number, label) = found.unwrap_or_default();
-        self.next.insert(name.to_owned(), number.saturating_add(1));
-        self.taken.insert(label.clone());
-        label
-    }
 }
 
 /// What a paper printed is one row a station: with other stations it fits no more.
@@ -458,7 +480,7 @@ fn duplicate(session: &mut Session, rows: &[Row]) -> Result<(), EditRefusal> {
     check_rows(session, rows)?;
     // A station is copied as it was, also where some of its captures are copied as well.
     let before = session.stations.clone();
-    let mut labels = Labels::of(session);
+    let mut labels = Labels::of_stations(&session.stations);
     for row in from_the_end(rows) {
         let Place { station_idx, capture_idx } = row.place();
         match row {
@@ -543,26 +565,69 @@ fn set_field(session: &mut Session, field: &SetupField) -> Result<(), EditRefusa
 }
 
 fn set_target(session: &mut Session, target: &Target) -> Result<(), EditRefusal> {
+    check_target(target)?;
     match target {
-        Target::Ball { radius_mm, radius_std_mm } => {
-            within(*radius_mm, &limits::BALL_RADIUS_MM)?;
-            radius_std_mm.map_or(Ok(()), |std| within(std, &limits::LENGTH_STD_MM))?;
-        }
         Target::RightAnglePlate => session.stations.iter_mut().for_each(need_edge),
         Target::Rgbd { .. } if !session.stations.is_empty() => return Err(EditRefusal::NoStationsHere),
-        Target::Rgbd { sequence } if sequence.trim().is_empty() || Path::new(sequence).is_absolute() => {
-            return Err(EditRefusal::NotASequence { found: sequence.clone() });
-        }
-        Target::Point | Target::Workpiece | Target::Rgbd { .. } => {}
+        Target::Ball { .. } | Target::Point | Target::Workpiece | Target::Rgbd { .. } => {}
     }
     if std::mem::discriminant(target) != std::mem::discriminant(&session.target) {
-        // The truth is a ball's, and what else the file said was said of the other kind.
+        // The truth and what is known were of the other kind, and so was what else the file said of it.
         session.truth = None;
+        session.known = Known::default();
         for name in ["target", "truth", "sequence", "stations"] {
             session.unknown.shift_remove(name);
         }
     }
     session.target = target.clone();
+    Ok(())
+}
+
+fn check_target(target: &Target) -> Result<(), EditRefusal> {
+    match target {
+        Target::Ball { radius_mm, radius_std_mm } => {
+            within(*radius_mm, &limits::BALL_RADIUS_MM)?;
+            radius_std_mm.map_or(Ok(()), |std| within(std, &limits::LENGTH_STD_MM))
+        }
+        Target::Rgbd { sequence } if sequence.trim().is_empty() || Path::new(sequence).is_absolute() => {
+            Err(EditRefusal::NotASequence { found: sequence.clone() })
+        }
+        Target::RightAnglePlate | Target::Point | Target::Workpiece | Target::Rgbd { .. } => Ok(()),
+    }
+}
+
+/// A point was touched somewhere, a workpiece has sizes; of other targets nothing is known beside what they are.
+fn check_known(known: &Known, target: &Target) -> Result<(), EditRefusal> {
+    let Known { point_in_base_mm, angle_deg, pitch_mm, height_mm, diameter_mm } = known;
+    let is_point = *target == Target::Point;
+    let is_workpiece = *target == Target::Workpiece;
+    let needed = match target {
+        Target::Point => "touched_in_base_mm or nothing",
+        Target::Workpiece => "angle_deg, pitch_mm, height_mm, diameter_mm or nothing",
+        Target::Ball { .. } | Target::RightAnglePlate | Target::Rgbd { .. } => "nothing",
+    };
+    let sizes = [
+        ("angle_deg", angle_deg, &limits::PLANE_ANGLE_DEG),
+        ("pitch_mm", pitch_mm, &limits::PART_SIZE_MM),
+        ("height_mm", height_mm, &limits::PART_SIZE_MM),
+        ("diameter_mm", diameter_mm, &limits::PART_SIZE_MM),
+    ];
+    let stray = [("touched_in_base_mm", point_in_base_mm.is_some() && !is_point)]
+        .into_iter()
+        .chain(sizes.map(|(field, value, _)| (field, value.is_some() && !is_workpiece)))
+        .find(|(_, is_stray)| *is_stray);
+    if let Some((field, _)) = stray {
+        return Err(EditRefusal::NotKnownOfThis { field, needed });
+    }
+    point_in_base_mm.as_ref().map_or(Ok(()), |point| all_within(point, &limits::POSITION_MM))?;
+    sizes.into_iter().try_for_each(|(_, value, quantity)| value.map_or(Ok(()), |value| within(value, quantity)))
+}
+
+fn set_rough_mounting(session: &mut Session, rough: Option<&Transform<Flange, Sensor>>) -> Result<(), EditRefusal> {
+    rough.map_or(Ok(()), |rough| all_within(&rough.translation_mm(), &limits::POSITION_MM))?;
+    session.sensor.rough_flange_from_sensor = rough.map(as_saved);
+    // What else the file said of it was about the one before.
+    session.sensor.unknown.shift_remove("rough_flange_from_sensor");
     Ok(())
 }
 
@@ -577,7 +642,8 @@ fn set_notation(session: &mut Session, notation: &PoseNotation) -> Result<(), Ed
 /// The numbers of each pose, as they are shown now, read in the other way.
 fn reinterpret(session: &mut Session, notation: &PoseNotation) -> Result<(), EditRefusal> {
     let shown = session.robot.notation;
-    for station in &mut session.stations {
+    let of_further = session.further.iter_mut().flat_map(|further| &mut further.stations);
+    for station in session.stations.iter_mut().chain(of_further) {
         for capture in &mut station.captures {
             let numbers = shown_numbers(capture, &shown);
             let base_from_flange = notation

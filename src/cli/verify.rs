@@ -1,0 +1,229 @@
+//! `handeye verify`: what a session's calibrations, and others, are worth on other data than their own.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use crate::app::verification::{as_further, verification};
+use crate::calibrate::MethodResult;
+use crate::report::calibration_file::read_matrix;
+use crate::report::digits::{fixed, signed};
+use crate::report::verification_file::{Checked, verification_file};
+use crate::session::{self, Edit, Session, measure};
+use crate::text::verify as words;
+use crate::verify::{Calibration, Distances, Measurement, Origin, Stability, TargetEvidence, Verification};
+use crate::watch::Unwatched;
+
+use super::{EXIT_NOTHING_COMPUTED, EXIT_WRONG_INPUT, fail};
+
+/// Arguments of `handeye verify`.
+#[derive(Clone, Debug, clap::Args)]
+pub struct VerifyArgs {
+    /// Session file
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// Session file with another target of the same sensor; may be given several times
+    #[arg(long = "with", value_name = "FILE")]
+    pub with: Vec<PathBuf>,
+    /// Result file (`handeye solve --json`) or text file with a matrix, to be judged along; may be given several times
+    #[arg(long = "calibration", value_name = "RESULT.json|MATRIX")]
+    pub calibrations: Vec<PathBuf>,
+    /// Print the verification file (JSON) instead of tables
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Runs the command.
+#[must_use]
+pub fn run(args: &VerifyArgs) -> ExitCode {
+    match verified(args) {
+        Ok(text) => super::print(&text).map_or_else(|exit_code| exit_code, |()| ExitCode::SUCCESS),
+        Err((exit_code, reason)) => fail(exit_code, &reason),
+    }
+}
+
+type Refusal = (u8, String);
+
+fn verified(args: &VerifyArgs) -> Result<String, Refusal> {
+    let session = with_further(args)?;
+    let (given, checked) = given(args)?;
+    let nothing = |reason: String| (EXIT_NOTHING_COMPUTED, reason);
+    let measured = measure(&session, None, &mut Unwatched).map_err(|cancelled| nothing(cancelled.to_string()))?;
+    let own = match session::problem(&session, &measured) {
+        Ok(problem) => {
+            let results = problem.solve_all(problem.methods(), &mut Unwatched);
+            let results = results.map_err(|cancelled| nothing(cancelled.to_string()))?;
+            Some((problem, results))
+        }
+        Err(refusal) if session.further.is_empty() => return Err(nothing(refusal.to_string())),
+        Err(_) => None,
+    };
+    let solved = own.as_ref().map(|(problem, results)| (problem, results.as_slice()));
+    let found = verification(&session, &measured, solved, &given, &mut Unwatched)
+        .map_err(|cancelled| nothing(cancelled.to_string()))?;
+    if found.calibrations.is_empty() {
+        let results = own.as_ref().map_or(&[][..], |(_, results)| results.as_slice());
+        return Err(nothing(words::nothing_to_verify(&first_reason(results))));
+    }
+    if args.json {
+        return Ok(format!("{:#}\n", verification_file(&session, &found, &checked)));
+    }
+    Ok(tables(&session, &found, &checked))
+}
+
+fn first_reason(results: &[MethodResult]) -> String {
+    results.iter().find_map(|result| result.outcome.as_ref().err()).map_or_else(String::new, ToString::to_string)
+}
+
+/// The session with the targets of the others added.
+fn with_further(args: &VerifyArgs) -> Result<Session, Refusal> {
+    let wrong = |reason: String| (EXIT_WRONG_INPUT, reason);
+    let load = |path: &PathBuf| session::load(path).map_err(|error| wrong(error.to_string()));
+    let mut session = load(&args.file)?;
+    for path in &args.with {
+        let other = load(path)?;
+        let shown = path.display().to_string();
+        if other.mount != session.mount {
+            return Err(wrong(words::other_mount(&shown)));
+        }
+        let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+        let edit = Edit::AddFurther(Box::new(as_further(other, &name)));
+        session = edit.apply(&session).map_err(|refusal| wrong(format!("{shown}: {refusal}")))?;
+    }
+    Ok(session)
+}
+
+/// The calibrations given, each with its check; of one that is no rotation the nearest is judged.
+fn given(args: &VerifyArgs) -> Result<(Vec<Calibration>, Vec<Checked>), Refusal> {
+    let (mut calibrations, mut checked) = (Vec::new(), Vec::new());
+    for path in &args.calibrations {
+        let (name, matrix) = read_matrix(path).map_err(|error| (EXIT_WRONG_INPUT, error.to_string()))?;
+        let check = matrix.check();
+        let flange_from_sensor = matrix
+            .nearest()
+            .ok_or_else(|| (EXIT_WRONG_INPUT, format!("{}: {}", path.display(), words::matrix_verdict(&check))))?;
+        let origin = Origin::Given { name: name.clone() };
+        calibrations.push(Calibration { origin, flange_from_sensor, workspace_point_std_mm: None });
+        checked.push((name, check));
+    }
+    Ok((calibrations, checked))
+}
+
+/// Everything for a terminal 100 columns wide.
+///
+/// Writing to a string does not fail, hence the `ok()`s.
+fn tables(session: &Session, found: &Verification, checked: &[Checked]) -> String {
+    let mut out = words::verify_head(&session.name, found.calibrations.len(), found.targets.len());
+    for (name, check) in checked {
+        writeln!(out, "\n{name}: {}", words::matrix_verdict(check)).ok();
+        if !check.is_rotation() {
+            writeln!(out, "  {}", words::defect_line(check)).ok();
+        }
+        if let Some(suspect) = &check.suspect {
+            writeln!(out, "  {}", words::suspect_sentence(suspect)).ok();
+        }
+    }
+    let names: Vec<String> =
+        found.calibrations.iter().map(|calibration| words::calibration_name(&calibration.origin, found)).collect();
+    for (target_idx, target) in found.targets.iter().enumerate() {
+        let own: Vec<bool> =
+            found.calibrations.iter().map(|calibration| calibration.origin.has_seen(target_idx)).collect();
+        distances(&mut out, target, &names, &own);
+        stability(&mut out, target, &names, &own);
+    }
+    cross_table(&mut out, found, &names);
+    out
+}
+
+/// A name cut to a column, with a star if the data are its own.
+fn label(name: &str, is_own: bool) -> String {
+    const WIDTH: usize = 32;
+    let short: String = name.chars().take(WIDTH - 2).collect();
+    format!("{:<WIDTH$}", if is_own { format!("{short} *") } else { short })
+}
+
+fn distances(out: &mut String, target: &TargetEvidence, names: &[String], own: &[bool]) {
+    let rows: Vec<(usize, &Distances)> =
+        target.rows.iter().enumerate().filter_map(|(idx, row)| Some((idx, row.as_ref().ok()?.distances()?))).collect();
+    let Some((_, first)) = rows.first() else { return };
+    out.push_str(&words::distances_head(&target.name, first.points.len()));
+    for (idx, distances) in rows {
+        let mut line = label(&names[idx], own[idx]);
+        for figures in [&distances.to_line, &distances.to_plane] {
+            for value in [figures.mean_mm, figures.std_mm, figures.max_mm] {
+                write!(line, "{:>8}", fixed(value, 3)).ok();
+            }
+            line.push_str("  ");
+        }
+        write!(line, "{:>9}{:>8}", fixed(distances.angle_rad.to_degrees(), 3), fixed(distances.gap_mm, 3)).ok();
+        writeln!(out, "{}", line.trim_end()).ok();
+    }
+}
+
+fn stability(out: &mut String, target: &TargetEvidence, names: &[String], own: &[bool]) {
+    let seen: Vec<(usize, &[Measurement], &Stability)> = target
+        .rows
+        .iter()
+        .enumerate()
+        .filter_map(|(idx, row)| {
+            let (measurements, stability) = row.as_ref().ok()?.stability()?;
+            Some((idx, measurements, stability))
+        })
+        .collect();
+    let Some((_, _, first)) = seen.first() else { return };
+    out.push_str(&words::stability_head(&target.name, first.is_touched));
+    // Two calibrations beside each other fill a terminal, as in the paper.
+    for pair in seen.chunks(2) {
+        let head: String = pair.iter().map(|(idx, ..)| label(&names[*idx], own[*idx]) + "  ").collect();
+        writeln!(out, "\n{:<14}{}", "", head.trim_end()).ok();
+        let axes = format!("{:>10}{:>10}{:>10}    ", "Δx", "Δy", "Δz");
+        writeln!(out, "{:<10}{}", words::NUMBER, axes.repeat(pair.len()).trim_end()).ok();
+        let mut row = |name: &str, value: &dyn Fn(&Stability) -> [String; 3]| {
+            let columns = pair.iter().map(|(_, _, stability)| {
+                let [x, y, z] = value(stability);
+                format!("{x:>10}{y:>10}{z:>10}    ")
+            });
+            writeln!(out, "{name:<10}{}", columns.collect::<String>().trim_end()).ok();
+        };
+        for (idx, measured) in pair[0].1.iter().enumerate() {
+            row(&measured.name(), &|stability| three(stability.deviations_mm[idx], signed));
+        }
+        row(words::MEAN, &|stability| three(stability.mean_mm, signed));
+        row(words::THREE_DELTA, &|stability| three(stability.three_std_mm(), fixed));
+    }
+}
+
+fn three(vector: crate::geometry::Vec3, text: fn(f64, usize) -> String) -> [String; 3] {
+    [vector.x, vector.y, vector.z].map(|value| text(value, 3))
+}
+
+fn cross_table(out: &mut String, found: &Verification, names: &[String]) {
+    out.push_str(words::CROSS_TABLE_HEAD);
+    let mut head = format!("{:<32}", "");
+    for target in &found.targets {
+        write!(head, "{:>20}", target.name.chars().take(19).collect::<String>()).ok();
+    }
+    writeln!(out, "{head}").ok();
+    for (idx, name) in names.iter().enumerate() {
+        let mut line = label(name, false);
+        for target in 0..found.targets.len() {
+            let is_own = found.calibrations[idx].origin.has_seen(target);
+            let cell = match found.cell(idx, target) {
+                Some(Ok(evaluation)) => {
+                    let figures = &evaluation.figures;
+                    let star = if is_own { " *" } else { "  " };
+                    format!("{} / {}{star}", fixed(figures.rms_mm, 3), fixed(figures.max_mm, 3))
+                }
+                _ => "–  ".to_owned(),
+            };
+            write!(line, "{cell:>20}").ok();
+        }
+        writeln!(out, "{}", line.trim_end()).ok();
+    }
+    let refusals = found.targets.iter().filter_map(|target| {
+        let refusal = target.rows.iter().find_map(|row| row.as_ref().err())?;
+        Some(format!("{}: {refusal}\n", target.name))
+    });
+    out.push_str(&refusals.collect::<String>());
+    out.push_str(words::OWN_DATA_FOOT);
+}

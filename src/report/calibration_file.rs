@@ -1,0 +1,165 @@
+//! A calibration from a file: a result file of ours, or a matrix in text.
+
+use std::fs::File;
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+use thiserror::Error;
+
+use crate::geometry::{Flange, Mat3, Sensor, Transform, Vec3};
+use crate::verify::{GivenMatrix, MatrixRefusal, parse_matrix};
+
+use super::result_file::FORMAT;
+
+/// No result file is larger.
+const LIMIT_BYTES: u64 = 256 << 20;
+
+/// Why a file holds no calibration.
+#[derive(Debug, Error)]
+pub enum CalibrationFileError {
+    /// The operating system did not let us read it.
+    #[error("cannot read {}: {problem}", file.display())]
+    Unreadable {
+        /// The file.
+        file: PathBuf,
+        /// The operating system's words.
+        problem: std::io::Error,
+    },
+    /// Neither text nor JSON.
+    #[error("{}: found {found}, expected a result file (`handeye solve --json`) or a matrix of 12 or 16 numbers", file.display())]
+    Neither {
+        /// The file.
+        file: PathBuf,
+        /// What it is.
+        found: String,
+    },
+    /// A field that is not as the format has it.
+    #[error("{}: {path}: found {found}, expected {expected}", file.display())]
+    Invalid {
+        /// The file.
+        file: PathBuf,
+        /// Where.
+        path: String,
+        /// What is there.
+        found: String,
+        /// What should be.
+        expected: &'static str,
+    },
+    /// Numbers that are no matrix.
+    #[error("{}: {refusal}", file.display())]
+    NoMatrix {
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        refusal: MatrixRefusal,
+    },
+    /// A matrix that is no calibration.
+    #[error(
+        "{}: found a matrix whose left part is no rotation (RᵀR is off 1 by up to {defect:.3}, the determinant is \
+         {determinant:.3}), expected perpendicular columns of length 1; mend the misprint, or give the calibration as a result file",
+        file.display()
+    )]
+    NoRotation {
+        /// The file.
+        file: PathBuf,
+        /// The largest element of `RᵀR − 1`.
+        defect: f64,
+        /// The determinant.
+        determinant: f64,
+    },
+}
+
+/// A calibration and what it is called.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedCalibration {
+    /// The file's name, and the method in it.
+    pub name: String,
+    /// The calibration; `base_from_sensor` for a sensor beside the robot.
+    pub flange_from_sensor: Transform<Flange, Sensor>,
+}
+
+/// Reads a calibration. Of a result file the answer is taken, or the first method that has a result.
+///
+/// # Errors
+/// [`CalibrationFileError`].
+pub fn read_calibration(path: &Path) -> Result<NamedCalibration, CalibrationFileError> {
+    let (name, matrix) = read_matrix(path)?;
+    Ok(NamedCalibration { name, flange_from_sensor: checked(path, &matrix)? })
+}
+
+/// The same as a matrix that need not be a rotation, with what it is called.
+///
+/// # Errors
+/// [`CalibrationFileError`], but never [`CalibrationFileError::NoRotation`].
+pub fn read_matrix(path: &Path) -> Result<(String, GivenMatrix), CalibrationFileError> {
+    let unreadable = |problem| CalibrationFileError::Unreadable { file: path.to_owned(), problem };
+    let file_name =
+        path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned());
+    let mut bytes = Vec::new();
+    File::open(path).map_err(unreadable)?.take(LIMIT_BYTES).read_to_end(&mut bytes).map_err(unreadable)?;
+    let neither = |found: &str| CalibrationFileError::Neither { file: path.to_owned(), found: found.to_owned() };
+    let text = std::str::from_utf8(&bytes).map_err(|_| neither("bytes that are no text"))?;
+    if text.trim_start().starts_with('{') {
+        let value: Value = serde_json::from_str(text).map_err(|error| neither(&format!("broken JSON ({error})")))?;
+        let (method, matrix) = from_result(path, &value)?;
+        return Ok((format!("{file_name}: {method}"), matrix));
+    }
+    let matrix =
+        parse_matrix(text).map_err(|refusal| CalibrationFileError::NoMatrix { file: path.to_owned(), refusal })?;
+    Ok((file_name, matrix))
+}
+
+fn checked(path: &Path, matrix: &GivenMatrix) -> Result<Transform<Flange, Sensor>, CalibrationFileError> {
+    let check = matrix.check();
+    matrix.nearest().filter(|_| check.is_rotation()).ok_or(CalibrationFileError::NoRotation {
+        file: path.to_owned(),
+        defect: check.defect,
+        determinant: check.determinant,
+    })
+}
+
+fn from_result(path: &Path, value: &Value) -> Result<(String, GivenMatrix), CalibrationFileError> {
+    let invalid = |at: &str, found: &Value, expected| CalibrationFileError::Invalid {
+        file: path.to_owned(),
+        path: at.to_owned(),
+        found: short(found),
+        expected,
+    };
+    if value["format"] != FORMAT {
+        return Err(invalid("format", &value["format"], "\"handeye-result\", as `handeye solve --json` writes it"));
+    }
+    let methods = value["methods"].as_array().map(Vec::as_slice).unwrap_or_default();
+    let is_ok = |entry: &&Value| entry["status"] == "ok";
+    let answer = methods.iter().filter(is_ok).find(|entry| entry["method"] == value["answer"]);
+    let Some(entry) = answer.or_else(|| methods.iter().find(is_ok)) else {
+        return Err(invalid("methods", &value["methods"], "at least one method with a result"));
+    };
+    let calibration = ["flange_from_sensor", "base_from_sensor"].iter().find_map(|name| entry.get(name));
+    let rows = calibration.and_then(|calibration| matrix_of(&calibration["matrix"]));
+    let Some(matrix) = rows else {
+        let found = calibration.unwrap_or(&Value::Null);
+        return Err(invalid("methods[].flange_from_sensor", found, "an object with a 4 × 4 matrix"));
+    };
+    let method = entry["method"].as_str().unwrap_or("?").to_owned();
+    Ok((method, matrix))
+}
+
+fn matrix_of(value: &Value) -> Option<GivenMatrix> {
+    let rows: Vec<Vec<f64>> = value
+        .as_array()?
+        .iter()
+        .map(|row| row.as_array()?.iter().map(Value::as_f64).collect())
+        .collect::<Option<_>>()?;
+    (rows.len() >= 3 && rows.iter().all(|row| row.len() == 4)).then(|| GivenMatrix {
+        rotation: Mat3::from_fn(|row, column| rows[row][column]),
+        translation_mm: Vec3::from_fn(|row, _| rows[row][3]),
+        decimals: 9,
+    })
+}
+
+fn short(value: &Value) -> String {
+    const MOST: usize = 40;
+    let text = value.to_string();
+    if value.is_null() { "nothing".to_owned() } else { text.chars().take(MOST).collect() }
+}

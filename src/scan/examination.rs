@@ -1,0 +1,93 @@
+//! Everything that is asked of a scan, together.
+
+use crate::watch::{Cancelled, Watch};
+
+use super::{
+    Cloud, NUM_DRAWN, PlaneFit, PointSet, Round, RoundKind, ScanError, SegmentOptions, Teeth, find_planes, fit_plane,
+    fit_round, measure_teeth, random_distances,
+};
+
+/// The same scan, the same points drawn.
+const SEED: u64 = 1;
+
+/// A region of a cloud and the plane fitted to it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Region {
+    /// What it is called.
+    pub name: String,
+    /// Its points.
+    pub set: PointSet,
+    /// Its plane, or why there is none.
+    pub plane: Result<PlaneFit, ScanError>,
+    /// Distances of points drawn at random from the plane, mm, signed.
+    pub distances_mm: Vec<f64>,
+}
+
+impl Region {
+    /// Fits a plane to a region and draws its points.
+    #[must_use]
+    pub fn new(cloud: &Cloud, name: String, set: PointSet) -> Self {
+        let plane = fit_plane(cloud, &set);
+        let distances_mm =
+            plane.as_ref().map(|fit| random_distances(cloud, &set, &fit.plane, NUM_DRAWN, SEED)).unwrap_or_default();
+        Self { name, set, plane, distances_mm }
+    }
+}
+
+/// The name of the so-many-th region: A, B, … as in the paper, then A1, B1, …
+#[must_use]
+pub fn region_name(idx: usize) -> String {
+    let letter = char::from(b'A' + u8::try_from(idx % 26).unwrap_or(0));
+    if idx < 26 { letter.to_string() } else { format!("{letter}{}", idx / 26) }
+}
+
+/// All planes that a cloud has, named in the order of their size.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn plane_regions(cloud: &Cloud, options: &SegmentOptions, watch: &mut dyn Watch) -> Result<Vec<Region>, Cancelled> {
+    let sets = find_planes(cloud, &PointSet::all(cloud), options, watch)?;
+    Ok(sets.into_iter().enumerate().map(|(idx, set)| Region::new(cloud, region_name(idx), set)).collect())
+}
+
+/// What else is looked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Wanted {
+    /// The teeth.
+    pub teeth: bool,
+    /// A diameter: of a ball or cylinder, whichever more points are of.
+    pub diameter: bool,
+    /// The diameter of this kind only.
+    pub round: Option<RoundKind>,
+}
+
+impl Wanted {
+    /// What is asked for where only what is known of a part says so.
+    #[must_use]
+    pub const fn of_known(has_teeth: bool, has_diameter: bool) -> Self {
+        Self { teeth: has_teeth, diameter: has_diameter, round: None }
+    }
+}
+
+/// What was found beside planes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Shapes {
+    /// The teeth, where they were asked for.
+    pub teeth: Option<Result<Teeth, ScanError>>,
+    /// The ball or cylinder, where one was asked for.
+    pub round: Option<Result<Round, ScanError>>,
+}
+
+/// Looks for teeth and diameters among points.
+#[must_use]
+pub fn shapes(cloud: &Cloud, set: &PointSet, wanted: Wanted) -> Shapes {
+    let round = match wanted.round {
+        Some(kind) => Some(fit_round(cloud, set, kind)),
+        None if wanted.diameter => {
+            let found = [RoundKind::Ball, RoundKind::Cylinder].map(|kind| fit_round(cloud, set, kind));
+            found.into_iter().max_by_key(|found| found.as_ref().map_or(0, |round| round.num_used))
+        }
+        None => None,
+    };
+    Shapes { teeth: wanted.teeth.then(|| measure_teeth(cloud, set)), round }
+}

@@ -1,0 +1,202 @@
+//! A choice of points: a box, a polygon in a view, or whatever a test says.
+
+use std::ops::Range;
+
+use crate::geometry::Vec3;
+
+use super::lanes::for_pieces;
+use super::{Cloud, ScanError};
+
+/// Points of a cloud, as runs of neighbouring indices: points that lie together in space mostly follow each other in their
+/// profiles, so the runs are few and the loops over them quick.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PointSet {
+    /// In rising order, none empty, none touching the next.
+    runs: Vec<Range<u32>>,
+    num_points: usize,
+}
+
+impl PointSet {
+    /// All points.
+    #[must_use]
+    pub fn all(cloud: &Cloud) -> Self {
+        let mut set = Self::default();
+        set.push_run(0..cloud.len());
+        set
+    }
+
+    /// From runs in rising order.
+    fn from_runs(runs: impl IntoIterator<Item = Range<usize>>) -> Self {
+        let mut set = Self::default();
+        for run in runs {
+            set.push_run(run);
+        }
+        set
+    }
+
+    fn push_run(&mut self, run: Range<usize>) {
+        if run.is_empty() {
+            return;
+        }
+        self.num_points += run.len();
+        let narrow = |idx: usize| u32::try_from(idx).unwrap_or(u32::MAX);
+        match self.runs.last_mut() {
+            Some(last) if last.end as usize == run.start => last.end = narrow(run.end),
+            _ => self.runs.push(narrow(run.start)..narrow(run.end)),
+        }
+    }
+
+    /// Number of points.
+    #[must_use]
+    pub const fn len(&self) -> usize {
+        self.num_points
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.num_points == 0
+    }
+
+    /// The runs of indices, rising.
+    pub fn runs(&self) -> impl Iterator<Item = Range<usize>> + '_ {
+        self.runs.iter().map(|run| run.start as usize..run.end as usize)
+    }
+
+    /// The indices, rising.
+    pub fn indices(&self) -> impl Iterator<Item = usize> + '_ {
+        self.runs().flatten()
+    }
+
+    /// Whether a point is among them.
+    #[must_use]
+    pub fn contains(&self, idx: usize) -> bool {
+        let after = self.runs.partition_point(|run| run.start as usize <= idx);
+        after.checked_sub(1).is_some_and(|run| idx < self.runs[run].end as usize)
+    }
+
+    /// At most `most` of the indices, evenly spread.
+    #[must_use]
+    pub fn thinned(&self, most: usize) -> Vec<usize> {
+        let step = self.num_points.div_ceil(most.max(1)).max(1);
+        self.indices().step_by(step).collect()
+    }
+
+    /// Those of the points that pass a test of their offsets from the cloud's origin, mm.
+    #[must_use]
+    pub fn filter(&self, cloud: &Cloud, test: impl Fn(Vec3) -> bool + Sync) -> Self {
+        let found = for_pieces(self, |piece| {
+            let mut runs: Vec<Range<usize>> = Vec::new();
+            for idx in piece.iter().cloned().flatten() {
+                if test(cloud.offset_mm(idx)) {
+                    match runs.last_mut() {
+                        Some(last) if last.end == idx => last.end = idx + 1,
+                        _ => runs.push(idx..idx + 1),
+                    }
+                }
+            }
+            runs
+        });
+        Self::from_runs(found.into_iter().flatten())
+    }
+
+    /// The points that are not in another set.
+    #[must_use]
+    pub fn without(&self, other: &Self) -> Self {
+        let mut left = Vec::new();
+        let mut others = other.runs().peekable();
+        for run in self.runs() {
+            let mut start = run.start;
+            while let Some(taken) = others.peek() {
+                if taken.start >= run.end {
+                    break;
+                }
+                left.push(start..taken.start.max(start));
+                start = start.max(taken.end.min(run.end));
+                if taken.end > run.end {
+                    break;
+                }
+                others.next();
+            }
+            left.push(start..run.end);
+        }
+        Self::from_runs(left)
+    }
+
+    /// The points of the cloud within a box along the base's axes, mm.
+    #[must_use]
+    pub fn in_box(cloud: &Cloud, low_mm: Vec3, high_mm: Vec3) -> Self {
+        let (low, high) = (low_mm - cloud.origin_mm(), high_mm - cloud.origin_mm());
+        Self::all(cloud).filter(cloud, |point| (0..3).all(|axis| (low[axis]..=high[axis]).contains(&point[axis])))
+    }
+
+    /// The points within a polygon drawn over a view: `right` and `down` are the view's axes in the base, corners are along
+    /// them from the cloud's origin, mm. Points behind others are taken as well.
+    ///
+    /// # Errors
+    /// [`ScanError::NotAPolygon`].
+    pub fn in_polygon(cloud: &Cloud, right: Vec3, down: Vec3, corners_mm: &[[f64; 2]]) -> Result<Self, ScanError> {
+        if corners_mm.len() < 3 {
+            return Err(ScanError::NotAPolygon { found: corners_mm.len() });
+        }
+        Ok(Self::all(cloud).filter(cloud, |point| is_inside(corners_mm, [point.dot(&right), point.dot(&down)])))
+    }
+}
+
+/// Whether a point is inside a polygon: a ray from it crosses the border an odd number of times.
+fn is_inside(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
+    let mut inside = false;
+    let mut before = corners[corners.len() - 1];
+    for &corner in corners {
+        let crosses = (corner[1] > y) != (before[1] > y);
+        if crosses && x < (before[0] - corner[0]) * (y - corner[1]) / (before[1] - corner[1]) + corner[0] {
+            inside = !inside;
+        }
+        before = corner;
+    }
+    inside
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(num: u16) -> Cloud {
+        let mut cloud = Cloud::about(Vec3::new(100.0, 0.0, 0.0));
+        for idx in 0..num {
+            cloud.push(Vec3::new(100.0 + f64::from(idx), 0.0, 0.0), 0).expect("room");
+        }
+        cloud
+    }
+
+    #[test]
+    fn sets_are_told_apart() {
+        let cloud = row(20);
+        let all = PointSet::all(&cloud);
+        let even = all.filter(&cloud, |point| point.x.rem_euclid(2.0) < 0.5);
+        assert_eq!(even.len(), 10);
+        assert_eq!(
+            all.without(&even).indices().collect::<Vec<_>>(),
+            (0..10).map(|idx| 2 * idx + 1).collect::<Vec<_>>()
+        );
+        let middle = PointSet::in_box(&cloud, Vec3::new(104.5, -1.0, -1.0), Vec3::new(110.5, 1.0, 1.0));
+        assert_eq!(middle.runs().collect::<Vec<_>>(), [5..11]);
+        assert_eq!(all.without(&middle).runs().collect::<Vec<_>>(), [0..5, 11..20]);
+        assert_eq!(middle.without(&all).len(), 0);
+        assert_eq!(all.without(&PointSet::default()), all);
+        assert_eq!(all.thinned(7).len(), 7);
+        assert!(
+            (0..20).all(|idx| middle.contains(idx) == (5..11).contains(&idx) && !PointSet::default().contains(idx))
+        );
+    }
+
+    #[test]
+    fn a_polygon_takes_what_is_inside_of_it() {
+        let cloud = row(20);
+        let triangle = [[2.5, -1.0], [8.5, -1.0], [5.0, 2.0]];
+        let set = PointSet::in_polygon(&cloud, Vec3::x(), Vec3::y(), &triangle).expect("three corners");
+        assert_eq!(set.runs().collect::<Vec<_>>(), [4..8]);
+        let refusal = PointSet::in_polygon(&cloud, Vec3::x(), Vec3::y(), &triangle[..2]);
+        assert_eq!(refusal, Err(ScanError::NotAPolygon { found: 2 }));
+    }
+}

@@ -1,0 +1,200 @@
+//! All calibrations at hand on all targets at hand.
+
+use crate::calibrate::{Method, MethodResult, Problem, best_available};
+use crate::geometry::{Flange, Sensor, Transform, Vec3};
+use crate::watch::{Cancelled, Watch};
+
+use super::{Evaluation, NotEvaluated, evaluate};
+
+/// An error on other data that is so many times that of a calibration computed from them is a contradiction, not chance:
+/// own data flatter by some tens of percent at most.
+const DOUBT_RATIO: f64 = 3.0;
+/// Errors below this are those of a good arm, whatever their ratio, mm.
+const LEAST_DOUBT_MM: f64 = 0.05;
+
+/// A target with its data, and what the methods made of it.
+#[derive(Clone, Debug)]
+pub struct TargetCase {
+    /// The user's name for it.
+    pub name: String,
+    /// Its place among the session's further targets; `None` for the session's own.
+    pub further_idx: Option<usize>,
+    /// Its data.
+    pub problem: Problem,
+    /// One entry a method that was run on it.
+    pub results: Vec<MethodResult>,
+    /// Where its ball's centre or tip is known to be, in the base, mm.
+    pub touched_mm: Option<Vec3>,
+}
+
+/// Where a calibration comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// Computed from one of the targets.
+    Solved {
+        /// The target's place in the study.
+        target_idx: usize,
+        /// By this method.
+        method: Method,
+    },
+    /// Computed from several targets at once.
+    Joint {
+        /// Their places in the study.
+        target_idxs: Vec<usize>,
+    },
+    /// From elsewhere: a file, a paper, another program.
+    Given {
+        /// What the user calls it.
+        name: String,
+    },
+}
+
+impl Origin {
+    /// Whether it was computed from a target's data, so that its errors there are in sample.
+    #[must_use]
+    pub fn has_seen(&self, target_idx: usize) -> bool {
+        match self {
+            Self::Solved { target_idx: from, .. } => *from == target_idx,
+            Self::Joint { target_idxs } => target_idxs.contains(&target_idx),
+            Self::Given { .. } => false,
+        }
+    }
+
+    /// The method, where it was computed here from one target.
+    #[must_use]
+    pub const fn method(&self) -> Option<Method> {
+        match self {
+            Self::Solved { method, .. } => Some(*method),
+            Self::Joint { .. } | Self::Given { .. } => None,
+        }
+    }
+}
+
+/// A calibration to be judged.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Calibration {
+    /// Where it comes from.
+    pub origin: Origin,
+    /// The calibration.
+    pub flange_from_sensor: Transform<Flange, Sensor>,
+    /// Standard deviation of a point in the workspace that it states itself, mm.
+    pub workspace_point_std_mm: Option<f64>,
+}
+
+/// What all calibrations make of one target.
+#[derive(Clone, Debug)]
+pub struct TargetEvidence {
+    /// The user's name for it.
+    pub name: String,
+    /// Its place among the session's further targets; `None` for the session's own.
+    pub further_idx: Option<usize>,
+    /// Its data.
+    pub problem: Problem,
+    /// One entry a calibration, in the order of [`Verification::calibrations`].
+    pub rows: Vec<Result<Evaluation, NotEvaluated>>,
+}
+
+/// The evidence for and against every calibration.
+#[derive(Clone, Debug, Default)]
+pub struct Verification {
+    /// Those of the first target's methods, of each further target's best, of all targets together, and those given.
+    pub calibrations: Vec<Calibration>,
+    /// One entry a target: the columns of the cross-target table.
+    pub targets: Vec<TargetEvidence>,
+}
+
+impl Verification {
+    /// A calibration on a target.
+    #[must_use]
+    pub fn cell(&self, calibration_idx: usize, target_idx: usize) -> Option<&Result<Evaluation, NotEvaluated>> {
+        self.targets.get(target_idx)?.rows.get(calibration_idx)
+    }
+
+    /// Whether other targets bear out the answer, the best calibration of the first target: on none of them its error is far
+    /// above that of the calibration computed from that very target. `None` without such a target.
+    #[must_use]
+    pub fn is_borne_out(&self) -> Option<bool> {
+        let best = Method::BEST_FIRST.into_iter().find_map(|method| {
+            let origin = Origin::Solved { target_idx: 0, method };
+            self.calibrations.iter().position(|calibration| calibration.origin == origin)
+        })?;
+        let mut held_out = self.targets.iter().enumerate().skip(1).filter_map(|(target_idx, target)| {
+            let rms_mm = |idx: usize| Some(target.rows.get(idx)?.as_ref().ok()?.figures.rms_mm);
+            let own = self.calibrations.iter().position(
+                |calibration| matches!(calibration.origin, Origin::Solved { target_idx: from, .. } if from == target_idx),
+            )?;
+            Some((rms_mm(best)?, rms_mm(own)?))
+        });
+        let first = held_out.next()?;
+        let is_fine = |(of_best, of_own): (f64, f64)| of_best < LEAST_DOUBT_MM || of_best < DOUBT_RATIO * of_own;
+        Some(std::iter::once(first).chain(held_out).all(is_fine))
+    }
+
+    /// The sensor's middle as the data have it: the mean of all points seen, in the sensor frame, mm. Where calibrations
+    /// differ is told there.
+    #[must_use]
+    pub fn reference_point_in_sensor_mm(&self) -> Vec3 {
+        let points: Vec<Vec3> = self.targets.iter().flat_map(|target| points_in_sensor(&target.problem)).collect();
+        #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 points")]
+        let count = points.len().max(1) as f64;
+        points.iter().sum::<Vec3>() / count
+    }
+}
+
+fn points_in_sensor(problem: &Problem) -> Vec<Vec3> {
+    let stations: Vec<&crate::calibrate::Station> = match problem {
+        Problem::Ball(ball) | Problem::Point(ball) => ball.stations.iter().collect(),
+        Problem::Plate(plate) => plate.stations.iter().map(|at_plate| &at_plate.station).collect(),
+    };
+    let captures = stations.into_iter().flat_map(|station| &station.captures);
+    let seen = captures.filter_map(|capture| match &capture.reading {
+        crate::calibrate::Reading::Arc(arc) => Some(Vec3::new(arc.circle.x_mm, 0.0, arc.circle.z_mm)),
+        other => other.point_in_sensor_mm(),
+    });
+    seen.collect()
+}
+
+/// The calibrations computed from the targets: of the first one every method's, of the others the best.
+#[must_use]
+pub fn solved_calibrations(targets: &[TargetCase]) -> Vec<Calibration> {
+    let mut calibrations = Vec::new();
+    for (target_idx, target) in targets.iter().enumerate() {
+        let solutions = target.results.iter().filter_map(|result| result.outcome.as_ref().ok());
+        let best = best_available(&target.results).map(|solution| solution.method);
+        for solution in solutions.filter(|solution| target_idx == 0 || best == Some(solution.method)) {
+            calibrations.push(Calibration {
+                origin: Origin::Solved { target_idx, method: solution.method },
+                flange_from_sensor: solution.flange_from_sensor,
+                workspace_point_std_mm: solution.uncertainty.as_ref().map(|known| known.workspace_point_std_mm),
+            });
+        }
+    }
+    calibrations
+}
+
+/// Evaluates calibrations on every target.
+///
+/// # Errors
+/// [`Cancelled`] if `watch` says so.
+pub fn verify(
+    targets: Vec<TargetCase>,
+    calibrations: Vec<Calibration>,
+    watch: &mut dyn Watch,
+) -> Result<Verification, Cancelled> {
+    let total = targets.len() * calibrations.len();
+    let mut evidence = Vec::with_capacity(targets.len());
+    for target in targets {
+        let mut rows = Vec::with_capacity(calibrations.len());
+        for calibration in &calibrations {
+            watch.report(evidence.len() * calibrations.len() + rows.len(), total)?;
+            rows.push(evaluate(&target.problem, &calibration.flange_from_sensor, target.touched_mm));
+        }
+        evidence.push(TargetEvidence {
+            name: target.name,
+            further_idx: target.further_idx,
+            problem: target.problem,
+            rows,
+        });
+    }
+    Ok(Verification { calibrations, targets: evidence })
+}
