@@ -121,7 +121,7 @@ impl<'a> Block<'a> {
                 let sums = reduced.sums_with(&state, |_| true);
                 let (reach, follows) =
                     eliminated::<NUM_UNKNOWNS, 3>(&(sums.hessian / *factor), &(sums.gradient / *factor))?;
-                Ok((softened(reach, by_radius), follows))
+                Ok((softened(&reach, by_radius), follows))
             }
             Self::Plate { reduced, base_from_plate } => {
                 let state = PlateState { flange_from_sensor: *flange_from_sensor, base_from_plate: *base_from_plate };
@@ -170,7 +170,7 @@ impl<'a> Block<'a> {
 
 /// With a ball's radius known no better than by one standard deviation, which moves the sensor by `by_radius`: its
 /// information is that of (H⁻¹ + d dᵀ)⁻¹.
-fn softened(reach: Reach, by_radius: &Vector6<f64>) -> Reach {
+fn softened(reach: &Reach, by_radius: &Vector6<f64>) -> Reach {
     let pulled = reach.information * by_radius;
     let damp = 1.0 / (1.0 + by_radius.dot(&pulled));
     Reach {
