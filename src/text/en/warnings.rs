@@ -85,7 +85,9 @@ pub const fn warning_remedy(warning: &Warning) -> &'static str {
         }
         Warning::ArcLargerThanBall { .. } => "Check the ball's radius and the profile's scale.",
         Warning::CaptureRefused { .. } => "Look at the profile in Arcs; capture it again with the target in view.",
-        Warning::StationSkipped { .. } => "Record this station again, with the target in view; for the largest arc as a sweep across the ball.",
+        Warning::StationSkipped { .. } => {
+            "Record this station again, with the target in view; for the largest arc as a sweep across the ball."
+        }
         Warning::TravelOffNormal { .. } => {
             "Let the robot step along the calibrated laser normal; the whole-curve method allows for the angle."
         }
