@@ -252,9 +252,9 @@ fn what_cannot_be_told_is_refused_by_name() {
     assert!(refusal.to_string().contains("a step at x = "), "{refusal}");
     let flat = extract(|x| Some(60.0 + 0.05 * x.abs()), None);
     assert!(matches!(flat, Err(EdgeRefusal::TooFlat { found_deg, .. }) if (4.0..7.0).contains(&found_deg)), "{flat:?}");
-    let wide = extract(|x| (x.abs() < 5.0).then(|| 70.0 - (100.0 - x * x).sqrt()), Some(Feature::Tip));
+    let wide = extract(|x| (x.abs() < 7.0).then(|| 70.0 - (100.0 - x * x).sqrt()), Some(Feature::Tip));
     assert!(
-        matches!(wide, Err(EdgeRefusal::TipTooWide { found_mm, .. }) if (9.0..11.0).contains(&found_mm)),
+        matches!(wide, Err(EdgeRefusal::TipTooWide { found_mm, .. }) if (13.0..15.0).contains(&found_mm)),
         "{wide:?}"
     );
     let no_tip = extract(|_| Some(60.0), Some(Feature::Tip));

@@ -15,7 +15,9 @@ use handeye::diagnose::{
 };
 use handeye::geometry::{Profile, Transform, Vec3};
 use handeye::plan::{Plan, PlanRefusal, PlannedStation};
+use handeye::scene::PartKind;
 use handeye::session::{self, Reading, Session, Target, samples};
+use handeye::simulate::{SimulationOptions, SimulationTarget, simulate};
 use handeye::text::{
     arcs as arcs_words, compare as compare_words, diagnosis as fault_words, diagnosis_panel as panel_words,
     method_name, method_short_name,
@@ -317,6 +319,45 @@ fn without_a_stated_distance_the_verdict_says_where_its_point_is() {
     assert!(session.sensor.reference_distance_mm.is_none());
     let harness = Bench::with(Shown::Compare, session).harness();
     harness.get_by_label_contains("a point amid the balls seen, z = ");
+}
+
+/// A simulated session of a plate or pin.
+fn simulated(kind: PartKind) -> Session {
+    simulate(&SimulationOptions { num_points: 240, ..SimulationOptions::of(SimulationTarget::Part(kind)) })
+}
+
+#[test]
+fn sessions_of_plates_and_tips_say_nothing_of_balls() {
+    for kind in [PartKind::Plate, PartKind::Pin] {
+        for shown in [Shown::Arcs, Shown::Compare] {
+            let harness = Bench::with(shown, simulated(kind)).harness();
+            for word in ["ball", "Ball", "section", "sweep"] {
+                assert_eq!(harness.query_all_by_label_contains(word).count(), 0, "{kind:?}: {word}");
+            }
+        }
+    }
+}
+
+#[test]
+fn arcs_shows_where_a_plates_edge_is_and_all_points_beside_it() {
+    let mut harness = Bench::with(Shown::Arcs, simulated(PartKind::Plate)).harness();
+    harness.get_by_label(arcs_words::IN_LASER_PLANE);
+    harness.get_by_label_contains(" at x ");
+    harness.get_by_label(&arcs_words::station_name("q4")).click();
+    harness.run();
+    assert_eq!(harness.state().selection.station_idx, 12);
+    harness.get_by_label(&arcs_words::profile_title("q4", 1));
+}
+
+#[test]
+fn compare_sets_the_plates_methods_against_each_other() {
+    let harness = Bench::with(Shown::Compare, simulated(PartKind::Plate)).harness();
+    harness.get_by_label(&compare_words::maximum_error(Method::PlateBundle));
+    for method in Method::PLATE {
+        harness.get_by_label(&compare_words::select_method(method_name(method)));
+    }
+    // Distances from the edges are relative to no station.
+    assert_eq!(harness.query_all_by_label(compare_words::FROM_FIRST).count(), 0);
 }
 
 /// The window's own software renderer, so that pictures need no graphics driver and are the same on every machine.

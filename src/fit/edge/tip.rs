@@ -7,9 +7,11 @@ use crate::geometry::stats::median;
 
 use super::pieces::{self, Piece};
 use super::points::Points;
-use super::sighting::{NARROW_PART, is_narrow};
+use super::sighting::is_narrow;
 use super::{EdgeFit, EdgeOptions, Feature, Sighting, corner};
 
+/// A thing wider than this part of the profile is no tip.
+const WIDEST_PART: f64 = 0.25;
 /// Fewer points than this are strays.
 pub(super) const MIN_TIP_POINTS: usize = 3;
 /// Strays that hang together by chance have less than one in so many of the points of the thing itself.
@@ -22,6 +24,8 @@ const MAX_GAP: usize = 8;
 const MAX_FALL_PITCHES: f64 = 6.0;
 /// Fewer points than this have no top that a circle could find.
 const MIN_TOP_POINTS: usize = 8;
+/// Change of z with x up to which a flat top may be seen aslant; steeper ones are sides.
+const STEEPEST_TOP: f64 = 0.6;
 /// A circle or line whose residuals are so many times the noise does not fit.
 const POOR_FIT: f64 = 3.0;
 /// A top that bulges by less than so many standard deviations may as well be flat.
@@ -37,13 +41,13 @@ pub(super) fn find(points: &Points, pieces: &[Piece], options: &EdgeOptions) -> 
         .filter(|cluster| is_inside(points, cluster) && is_in_front(points, cluster, &background))
         .collect();
     let (narrow, wide): (Vec<_>, Vec<_>) =
-        standing_out.drain(..).partition(|cluster| width_part(points, cluster) < NARROW_PART);
+        standing_out.drain(..).partition(|cluster| width_part(points, cluster) < WIDEST_PART);
     match (narrow.as_slice(), wide.as_slice()) {
         ([tip], _) => fit(points, pieces, tip, options)
             .ok_or(EdgeRefusal::NoFeature { feature: Some(Feature::Tip), num_points: points.len() }),
         ([], [wide, ..]) => Err(EdgeRefusal::TipTooWide {
             found_mm: width_mm(points, wide),
-            limit_mm: NARROW_PART * points.pitch_mm * to_f64(points.num_grid),
+            limit_mm: WIDEST_PART * points.pitch_mm * to_f64(points.num_grid),
         }),
         ([], []) => Err(EdgeRefusal::NoFeature { feature: Some(Feature::Tip), num_points: points.len() }),
         (several, _) => Err(EdgeRefusal::Ambiguous {
@@ -148,36 +152,42 @@ impl Shape {
 /// A pointed tip: its two flanks are straight.
 fn flanks_meet(points: &Points, pieces: &[Piece], cluster: &[usize], options: &EdgeOptions) -> Option<Shape> {
     let (first, last) = (cluster[0], cluster[cluster.len() - 1]);
-    let mut inside: Vec<&Piece> =
-        pieces.iter().filter(|piece| piece.first <= last && piece.last >= first && is_narrow(points, piece)).collect();
-    inside.sort_by_key(|piece| std::cmp::Reverse(piece.fit.num_points));
-    inside.truncate(2);
-    inside.sort_by_key(|piece| piece.first);
-    let [before, after] = inside.as_slice() else { return None };
-    let explained = before.fit.num_points + after.fit.num_points;
+    let is_part = |piece: &&Piece| piece.first <= last && piece.last >= first && is_narrow(points, piece);
+    let parts: Vec<&Piece> = pieces.iter().filter(is_part).collect();
+    let explained: usize = parts.iter().map(|piece| piece.fit.num_points).sum();
     // Chords of a round thing leave points out, and fit those poorly that they take.
-    let worst_rms_mm = before.fit.rms_mm.max(after.fit.rms_mm);
-    if MOST_OF * explained < (MOST_OF - 1) * cluster.len() || worst_rms_mm > POOR_FIT * expected_noise(points, options)
-    {
+    if MOST_OF * explained < (MOST_OF - 1) * cluster.len() {
+        return None;
+    }
+    let tops = parts.windows(2).filter_map(|pair| flanks_top(points, pair[0], pair[1], options));
+    // A shaft below its cone makes a corner as well; the tip is the one nearest to the sensor.
+    let range = |edge: &EdgeFit| edge.point_mm[1] * points.away;
+    let found = tops.min_by(|a, b| range(a).total_cmp(&range(b)))?;
+    let distance = |place: &usize| {
+        let distances = parts.iter().map(|piece| piece.fit.line.distance_mm(points.at(*place)).abs());
+        distances.fold(f64::INFINITY, f64::min)
+    };
+    Some(Shape::new(EdgeFit { feature: Feature::Tip, ..found }, cluster.iter().map(distance)))
+}
+
+/// Where two neighbouring flanks meet; `None` where they fit poorly, are in one line within their noise, or meet far away.
+fn flanks_top(points: &Points, before: &Piece, after: &Piece, options: &EdgeOptions) -> Option<EdgeFit> {
+    let flanks = [before, after];
+    if flanks.iter().any(|flank| flank.fit.rms_mm > POOR_FIT * expected_noise(points, options)) {
         return None;
     }
     let angle_rad = before.fit.line.angle_to_rad(&after.fit.line);
-    let angle_variance: f64 =
-        [before, after].iter().map(|piece| piece.fit.rms_mm.max(points.noise_mm).powi(2) / piece.fit.spread_mm2).sum();
-    if angle_rad < CERTAIN_AT_STDS * angle_variance.sqrt() {
+    let variance = |piece: &&Piece| piece.fit.rms_mm.max(points.noise_mm).powi(2) / piece.fit.spread_mm2;
+    if angle_rad < CERTAIN_AT_STDS * flanks.iter().map(variance).sum::<f64>().sqrt() {
         return None;
     }
     let found = corner::fit(points, before, after, options)?;
-    let is_on_it = [before, after].iter().all(|piece| {
+    let is_near = |piece: &Piece| {
         let ends = [piece.first, piece.last].map(|place| points.x_mm[place]);
         let reach = (ends[1] - ends[0]).abs();
         ends.iter().any(|x| (found.point_mm[0] - x).abs() <= reach)
-    });
-    let distance = |place: &usize| {
-        let distances = [before, after].map(|piece| piece.fit.line.distance_mm(points.at(*place)).abs());
-        distances[0].min(distances[1])
     };
-    is_on_it.then(|| Shape::new(EdgeFit { feature: Feature::Tip, ..found }, cluster.iter().map(distance)))
+    (is_near(before) && is_near(after)).then_some(found)
 }
 
 /// A rounded top: the point nearest to the sensor of the circle through the points.
@@ -260,6 +270,11 @@ fn middle(points: &Points, cluster: &[usize], options: &EdgeOptions) -> Option<E
     let straight = line::fit_trimmed(&x_mm, &z_mm, &start, 2.0 * points.tolerance_mm)?;
     let on_line = |place: &usize| straight.line.distance_mm(points.at(*place)).abs() <= straight.limit_mm;
     let seen: Vec<usize> = cluster.iter().copied().filter(on_line).collect();
+    let slope = straight.line.slope()?;
+    // One side of a pointed tip whose other side is missing has no middle.
+    if slope.abs() > STEEPEST_TOP || to_f64(seen.len()) < LEAST_DENSITY * to_f64(cluster.len()) {
+        return None;
+    }
     let (first, last) = (*seen.first()?, *seen.last()?);
     let middle_x_mm = f64::midpoint(points.x_mm[first], points.x_mm[last]);
     let point_mm = straight.line.at_x_mm(middle_x_mm)?;
@@ -269,7 +284,7 @@ fn middle(points: &Points, cluster: &[usize], options: &EdgeOptions) -> Option<E
     let seen_part = to_f64(seen.len()) / to_f64(points.grid[last] - points.grid[first] + 1);
     let of_end = 1.0 / 12.0 + (1.0 - seen_part) / (seen_part * seen_part);
     let across = points.pitch_mm * points.pitch_mm * of_end / 2.0;
-    let slide = Vector2::new(1.0, straight.line.slope()?);
+    let slide = Vector2::new(1.0, slope);
     let off = straight.variance_factor_at(point_mm) * std_mm * std_mm;
     Some(EdgeFit {
         feature: Feature::Tip,

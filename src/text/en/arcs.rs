@@ -19,6 +19,8 @@ pub const RMS_HINT: &str = "root mean square distance of the inliers from the ci
 pub const FIT: &str = "Fit";
 /// Before the step buttons.
 pub const STEP: &str = "step";
+/// The same where the profiles of a station are no steps.
+pub const PROFILE: &str = "profile";
 /// Name of the button to the step before.
 pub const PREVIOUS_STEP: &str = "Previous step";
 /// Name of the button to the next step.

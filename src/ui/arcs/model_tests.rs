@@ -77,3 +77,22 @@ fn the_curve_ends_where_the_ball_does() {
     let top = points.iter().map(|[_, radius]| *radius).fold(0.0, f64::max);
     assert!(top > 9.99);
 }
+
+#[test]
+fn a_plates_profile_has_its_flanks_and_the_distances_from_them() {
+    let x_mm: Vec<f64> = (0..200).map(|idx| f64::from(idx) * 0.1).collect();
+    let z_mm: Vec<Option<f64>> = x_mm.iter().map(|x| Some(60.0 + (x - 8.0).abs())).collect();
+    let profile = Profile::new(x_mm, &z_mm).expect("valid");
+    let found = crate::fit::extract_edge(&profile, &crate::fit::EdgeOptions::default()).expect("a corner");
+    let reading = calibrate::Reading::Edge(Arc::new(found));
+    let model = profile_model(&profile, Some(&reading), None, CircleMethod::Robust);
+    let edge = model.edge().expect("a corner");
+    assert!(model.section().is_none() && model.has_residuals());
+    assert_eq!((edge.feature, edge.flanks.len()), (Feature::Corner, 2));
+    assert!((edge.point_mm[0] - 8.0).abs() < 1e-6);
+    // On either flank.
+    assert!(model.points.iter().all(|point| point.residual_um.abs() < 1e-3));
+    let row = capture_row(Some(&reading));
+    assert_eq!((row.feature, row.problem), (Some(Feature::Corner), None));
+    assert!(row.point_mm.is_some() && row.section_radius_mm.is_none());
+}

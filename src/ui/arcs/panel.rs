@@ -287,6 +287,7 @@ fn top_strip(
             Frame::new().inner_margin(Margin::symmetric(12, 8)).show(ui, |ui| {
                 ui.horizontal_wrapped(|ui| {
                     ui.set_min_height(STRIP_HEIGHT - 16.0);
+                    let is_of_arcs = fit.is_some();
                     if let Some(fit) = fit {
                         let label = ui.label(text::FIT);
                         ComboBox::from_id_salt("arcs fit")
@@ -300,7 +301,7 @@ fn top_strip(
                             .response
                             .labelled_by(label.id);
                     }
-                    steps(ui, station, selection);
+                    steps(ui, if is_of_arcs { text::STEP } else { text::PROFILE }, station, selection);
                     if let Some(note) = note {
                         ui.label(theme::dim(ui, note));
                     }
@@ -319,12 +320,12 @@ fn top_strip(
     );
 }
 
-fn steps(ui: &mut Ui, station: &StationRow, selection: &mut Selection) {
+fn steps(ui: &mut Ui, name: &str, station: &StationRow, selection: &mut Selection) {
     let num_steps = station.captures.len();
     // In a narrow window the buttons stay together, at the price of the word before them.
     if ui.available_size_before_wrap().x > STEPS_WIDTH {
         ui.add_space(8.0);
-        ui.label(theme::dim(ui, text::STEP));
+        ui.label(theme::dim(ui, name));
     }
     ui.scope(|ui| {
         ui.spacing_mut().button_padding.x = 8.0;

@@ -16,7 +16,7 @@ const PROFILE_PART: f32 = 0.62;
 /// Height of a plot that has room for the whole title of its z axis, points.
 const TITLE_NEEDS: f32 = 200.0;
 /// How far around an edge point the view reaches, as a part of the profile's width.
-const SURROUNDINGS_PART: f64 = 0.16;
+const SURROUNDINGS_PART: f64 = 0.3;
 /// Radius of a point of a profile, points.
 const POINT_RADIUS: f32 = 1.6;
 /// Points closer than this, points on the screen, are painted once.
@@ -236,7 +236,8 @@ fn paint_edge(ui: &Ui, canvas: &Canvas, edge: &EdgeModel) {
     cross(canvas, at, Stroke::new(1.8, palette.text));
     canvas.painter.circle_stroke(at, 9.0, stroke);
     let label = text::centre(&with_std(x_mm, x_std), &with_std(z_mm, z_std));
-    canvas.note(ui, at + vec2(0.0, 18.0), Align2::CENTER_TOP, &label, palette.text);
+    // Towards the sensor there is nothing that the label could cover.
+    canvas.note(ui, at - vec2(0.0, 14.0), Align2::CENTER_BOTTOM, &label, palette.text);
 }
 
 fn paint_residuals(ui: &Ui, canvas: &Canvas, model: &ProfileModel) {

@@ -7,7 +7,7 @@ use egui::{
 use crate::app::Command;
 use crate::calibrate::{Method, Mount};
 use crate::text::compare as text;
-use crate::text::methods::method_name;
+use crate::text::methods::{method_name, method_short_name};
 use crate::ui::figures::std_text;
 use crate::ui::{Selection, charts, theme, widgets};
 
@@ -88,14 +88,21 @@ fn head(ui: &mut Ui, column: &Column, reference: ErrorReference, selection: &mut
     let (sign, _) = row.allocate_exact_size(vec2(14.0, 14.0), Sense::hover());
     let color = theme::method_color(column.method);
     charts::marker(row.painter(), theme::method_marker(column.method), sign.center(), 5.0, color, egui::Stroke::NONE);
-    row.add(egui::Label::new(theme::strong(name)).selectable(false).extend());
-    if let Ok(table) = &column.outcome {
+    let figures = column.outcome.as_ref().ok().map(|table| {
+        text::method_figures(
+            &coordinate(table.max_error_mm(reference)),
+            table.leave_one_out_rms_mm.map(std_text).as_deref(),
+            table.workspace_std_mm.map(std_text).as_deref(),
+        )
+    });
+    // Where the whole name leaves the figures no room, the short one does.
+    let font = egui::TextStyle::Body.resolve(row.style());
+    let width = |text: &str| row.painter().layout_no_wrap(text.to_owned(), font.clone(), Color32::PLACEHOLDER).size().x;
+    let needed = width(name) + figures.as_deref().map_or(0.0, width) + 3.0 * theme::GAP;
+    let shown_name = if needed > row.available_width() { method_short_name(column.method) } else { name };
+    row.add(egui::Label::new(theme::strong(shown_name)).selectable(false).extend()).on_hover_text(name);
+    if let (Ok(table), Some(figures)) = (&column.outcome, figures) {
         row.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let figures = text::method_figures(
-                &coordinate(table.max_error_mm(reference)),
-                table.leave_one_out_rms_mm.map(std_text).as_deref(),
-                table.workspace_std_mm.map(std_text).as_deref(),
-            );
             let label = egui::Label::new(theme::dim(ui, figures)).selectable(false).truncate();
             ui.add(label).on_hover_text(text::method_figures_hint(table.is_of_plate));
         });

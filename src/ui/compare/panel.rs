@@ -133,7 +133,10 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut CompareStat
         if !tables.is_empty() {
             let left_over = height - (ui.cursor().top() - top) - DIFFERENCE_HEIGHT;
             plots(ui, &model.target, &tables, left_over.clamp(MIN_PLOT_HEIGHT, MAX_PLOT_HEIGHT), state);
-            differences::show(ui, &model.differences, shown.contains(&Method::BallMaxArcStep));
+            // With one method for the target there is nothing to set it against.
+            if model.columns.len() > 1 {
+                differences::show(ui, &model.differences, shown.contains(&Method::BallMaxArcStep));
+            }
         }
     });
     ui.advance_cursor_after_rect(area);

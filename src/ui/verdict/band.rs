@@ -54,7 +54,7 @@ pub fn show(
                         }
                         if rows == 1 {
                             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                                better_by(ui, band, &words, true)
+                                better_by(ui, band, &words, true);
                             });
                         }
                     });
