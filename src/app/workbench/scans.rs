@@ -50,6 +50,8 @@ pub enum ScanCommand {
         /// Through what.
         calibration: ScanCalibration,
     },
+    /// Sees the chosen scan through the calibration in a file.
+    UseCalibration(PathBuf),
     /// Reads points from a file and finds their planes.
     OpenPoints(PathBuf),
     /// Finds the planes anew, in place of all regions.
@@ -112,8 +114,6 @@ enum Outcome {
 pub struct ScanFailure {
     /// The revision of the document.
     pub revision: u64,
-    /// What was to be examined.
-    pub wanted: Option<(usize, ScanCalibration)>,
     /// Why not.
     pub reason: String,
 }
@@ -125,8 +125,10 @@ pub struct Scans {
     failure: Option<ScanFailure>,
     working: Slot<Result<Outcome, String>>,
     exporting: Slot<Result<Outcome, String>>,
-    /// What is being examined.
-    wanted: Option<(usize, ScanCalibration)>,
+    /// The scan and calibration that the user chose last.
+    chosen: Option<(usize, ScanCalibration)>,
+    /// Whether an examination of that is under way.
+    is_examining: bool,
     last_id: u64,
 }
 
@@ -135,6 +137,12 @@ impl Scans {
     #[must_use]
     pub const fn examined(&self) -> Option<&ExaminedScan> {
         self.examined.as_ref()
+    }
+
+    /// The scan and the calibration that were asked for last.
+    #[must_use]
+    pub const fn chosen(&self) -> Option<&(usize, ScanCalibration)> {
+        self.chosen.as_ref()
     }
 
     /// Why the last examination brought nothing.
@@ -175,6 +183,10 @@ impl Workbench {
     pub(super) fn command_scans(&mut self, command: ScanCommand) {
         match command {
             ScanCommand::Examine { scan_idx, calibration } => self.examine_scan(scan_idx, calibration),
+            ScanCommand::UseCalibration(path) => {
+                let scan_idx = self.scans.chosen.as_ref().map_or(0, |(scan_idx, _)| *scan_idx);
+                self.examine_scan(scan_idx, ScanCalibration::File(path));
+            }
             ScanCommand::OpenPoints(path) => self.open_points(path),
             ScanCommand::FindPlanes => self.change_regions(|_, cloud, watch| find_all(cloud, watch)),
             ScanCommand::AddRegion(choice) => self.change_regions(move |mut regions, cloud, _| {
@@ -216,7 +228,7 @@ impl Workbench {
             ScanCommand::Cancel => {
                 self.scans.working.cancel();
                 self.scans.exporting.cancel();
-                self.scans.wanted = None;
+                self.scans.is_examining = false;
             }
         }
     }
@@ -231,7 +243,8 @@ impl Workbench {
         let (session, revision) = (Arc::clone(&document.session), document.revision);
         let results = self.results.as_ref().filter(|results| self.is_current(results.revision)).cloned();
         let id = self.scans.next_id();
-        self.scans.wanted = Some((scan_idx, calibration.clone()));
+        self.scans.chosen = Some((scan_idx, calibration.clone()));
+        self.scans.is_examining = true;
         self.scans.failure = None;
         self.scans.working.start("examine scan", &self.wake, move |watch| {
             let found = match (&calibration, results) {
@@ -278,7 +291,7 @@ impl Workbench {
     fn open_points(&mut self, path: PathBuf) {
         let revision = self.document.as_ref().map_or(0, |document| document.revision);
         let id = self.scans.next_id();
-        self.scans.wanted = None;
+        self.scans.is_examining = false;
         self.scans.failure = None;
         self.scans.working.start("read points", &self.wake, move |watch| {
             let read = read_cloud(&path, watch).map_err(|error| error.to_string())?;
@@ -334,9 +347,9 @@ impl Workbench {
             match outcome {
                 JobOutcome::Done(Ok(outcome)) => self.take_scan_outcome(outcome),
                 JobOutcome::Done(Err(reason)) => {
-                    if let Some(wanted) = self.scans.wanted.take() {
+                    if std::mem::take(&mut self.scans.is_examining) {
                         let revision = self.document.as_ref().map_or(0, |document| document.revision);
-                        self.scans.failure = Some(ScanFailure { revision, wanted: Some(wanted), reason });
+                        self.scans.failure = Some(ScanFailure { revision, reason });
                     } else {
                         self.notify(NoticeKind::Error, reason);
                     }
@@ -352,7 +365,7 @@ impl Workbench {
         let of = |scan: &&mut ExaminedScan, id: u64| scan.id == id;
         match outcome {
             Outcome::Examined(scan) => {
-                self.scans.wanted = None;
+                self.scans.is_examining = false;
                 self.scans.examined = Some(*scan);
             }
             Outcome::Regions { id: scan_id, regions } => {
