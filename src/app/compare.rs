@@ -43,9 +43,13 @@ pub fn difference(first: &Solution, second: &Solution) -> Difference {
     }
 }
 
-/// The paper's "maximum error": the largest coordinate of any station's ball relative to the first station's, mm.
+/// The paper's "maximum error": the largest coordinate of any station's ball relative to the first station's, mm; of a plate
+/// the largest distance of a point from its edge.
 #[must_use]
 pub fn maximum_error_mm(solution: &Solution) -> f64 {
+    if solution.plate.is_some() {
+        return solution.scatter.max_mm;
+    }
     solution.stations.iter().map(|station| station.error_from_first_mm.amax()).fold(0.0, f64::max)
 }
 
@@ -138,13 +142,18 @@ pub struct TruthDistance {
     pub rotation_rad: f64,
 }
 
-/// How far `solution` is from `truth`, at the workspace point where there is one, else at the middle of the balls seen.
+/// How far `solution` is from `truth`, at the workspace point where there is one, else at the middle of what was seen.
 #[must_use]
 pub fn distance_from_truth(solution: &Solution, truth: &Truth) -> TruthDistance {
     let reference_point = solution.uncertainty.as_ref().map_or_else(
         || {
-            let count = solution.stations.len().max(1);
-            let sum: Vec3 = solution.stations.iter().map(|station| station.target_in_sensor_mm).sum();
+            let points = solution.plate.iter().flat_map(|plate| &plate.points);
+            let seen = || {
+                let of_stations = solution.stations.iter().map(|station| station.target_in_sensor_mm);
+                of_stations.chain(points.clone().map(|point| point.point_in_sensor_mm))
+            };
+            let count = seen().count().max(1);
+            let sum: Vec3 = seen().sum();
             #[expect(clippy::cast_precision_loss, reason = "a session has few stations")]
             let count = count as f64;
             sum / count

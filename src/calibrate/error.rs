@@ -55,7 +55,7 @@ pub enum SolveError {
         /// Why the first of the others cannot be used.
         refusal: Option<Refusal>,
     },
-    /// All orientations are the same, so a shift of the sensor cannot be told from a shift of the ball.
+    /// All orientations are the same, so a shift of the sensor cannot be told from a shift of the target.
     #[error(
         "the orientations differ by {span_deg:.2}° at most: with translations only, the sensor's place on the flange \
          cannot be found. Tilt and turn the tool between stations"
@@ -80,7 +80,7 @@ pub enum SolveError {
     /// The readings leave a combination of the unknowns free.
     #[error(
         "the stations leave at least one direction free (condition number {condition:.1e}): add stations that are tilted \
-         differently, and with the ball elsewhere in the profile"
+         differently, and with the target elsewhere in the profile"
     )]
     Undetermined {
         /// Condition number of the scaled normal equations.
@@ -97,7 +97,8 @@ pub enum SolveError {
     /// Two lines in space and a sensor on the flange need more.
     #[error(
         "found {found_p} points on edge p and {found_q} on edge q; at least {needed} on each are needed, with different \
-         orientations{because}",
+         orientations{alone}{because}",
+        alone = one_edge_alone(*found_p, *found_q),
         because = because(refusal.as_ref())
     )]
     TooFewEdgePoints {
@@ -110,6 +111,11 @@ pub enum SolveError {
         /// Why the first of the others cannot be used.
         refusal: Option<Refusal>,
     },
+    /// Targets of one sensor are seen from one place.
+    #[error(
+        "some targets are seen by a sensor on the flange, others by one beside the robot: they share no calibration"
+    )]
+    MixedMounts,
     /// No start led to a finite solution.
     #[error("the solver found no finite solution; check poses and units")]
     Diverged,
@@ -117,6 +123,17 @@ pub enum SolveError {
 
 const fn plural(count: usize) -> &'static str {
     if count == 1 { "" } else { "s" }
+}
+
+/// What a single straight line leaves open.
+const fn one_edge_alone(found_p: usize, found_q: usize) -> &'static str {
+    match (found_p, found_q) {
+        (0, 0) | (1.., 1..) => "",
+        _ => {
+            ". From one straight edge alone the plate's turn about that edge and the place of its corner along it cannot be \
+             found, and no right angle bears on the sensor: let the laser line cross the other edge as well"
+        }
+    }
 }
 
 fn because(refusal: Option<&Refusal>) -> String {

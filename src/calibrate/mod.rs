@@ -9,6 +9,7 @@
 
 pub mod ball;
 pub mod error;
+pub mod joint;
 pub mod method;
 pub mod observation;
 pub mod plate;
@@ -24,6 +25,7 @@ pub mod verdict;
 pub mod warning;
 
 pub use error::SolveError;
+pub use joint::{JointSolution, JointTarget, solve_joint};
 pub use method::{Method, MethodResult, best_available, solution_of, solve, solve_all};
 pub use plate::PlateReduced;
 pub use problem::{

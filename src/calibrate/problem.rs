@@ -75,6 +75,17 @@ pub enum Edge {
     Q,
 }
 
+impl Edge {
+    /// As files and tables write it.
+    #[must_use]
+    pub const fn symbol(self) -> &'static str {
+        match self {
+            Self::P => "p",
+            Self::Q => "q",
+        }
+    }
+}
+
 /// What one capture says about the target.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reading {

@@ -9,8 +9,8 @@ pub mod convention;
 pub mod finding;
 pub mod geometry;
 pub mod hypotheses;
-mod methods;
 mod model;
+mod plate;
 pub mod remedy;
 pub mod stations;
 mod verdict;
@@ -60,7 +60,7 @@ impl Diagnosis {
 pub struct Case<'a> {
     /// The document.
     pub session: &'a Session,
-    /// Its enabled stations, reduced to arcs.
+    /// Its enabled stations, reduced to arcs or tips.
     pub problem: &'a BallProblem,
     /// What the methods made of it.
     pub results: &'a [MethodResult],
@@ -90,8 +90,10 @@ pub fn diagnose(case: Case<'_>, watch: &mut dyn Watch) -> Result<Diagnosis, Canc
     Ok(Diagnosis { findings, readings, validation })
 }
 
-/// Examines a session with any target and its results. What only a ball's arcs can tell is asked of balls alone; the
-/// findings of other targets are what their methods say.
+/// A tip has no size that errors could be held against; that of a usual ball stands in, mm.
+const SIZE_FOR_A_TIP_MM: f64 = 15.0;
+
+/// Examines a session with any target and its results. A tip is examined as a ball whose centres are given.
 ///
 /// # Errors
 /// [`Cancelled`] if `watch` says so.
@@ -103,10 +105,11 @@ pub fn diagnose_any(
 ) -> Result<Diagnosis, Cancelled> {
     match problem {
         Problem::Ball(problem) => diagnose(Case { session, problem, results }, watch),
-        Problem::Point(_) | Problem::Plate(_) => {
-            watch.report(0, 1)?;
-            Ok(methods::examine(results))
+        Problem::Point(tip) => {
+            let problem = &BallProblem { radius_mm: SIZE_FOR_A_TIP_MM, ..tip.clone() };
+            diagnose(Case { session, problem, results }, watch)
         }
+        Problem::Plate(problem) => plate::examine(session, problem, results, watch),
     }
 }
 

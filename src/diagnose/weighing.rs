@@ -2,13 +2,13 @@
 //! is gone once the cause is mended.
 
 use crate::calibrate::validation::{Normality, Validation};
-use crate::calibrate::{BallProblem, Method, MethodResult, Warning, best_available, solve, solve_all};
-use crate::session::{Session, ball_problem, measure};
+use crate::calibrate::{BallProblem, Method, MethodResult, Problem, Warning, best_available, solve, solve_all};
+use crate::session::{self, Session, Target, measure};
 use crate::watch::Unwatched;
 
 use super::finding::{Fault, Finding, Severity};
 use super::model::{Extension, Model};
-use super::{Case, remedy, suspicions};
+use super::{Case, SIZE_FOR_A_TIP_MM, remedy, suspicions};
 
 /// A remedy that lowers the residual by less has not shown that it mends anything.
 const MENDS_FROM: f64 = 1.5;
@@ -115,7 +115,7 @@ fn reason(results: &[MethodResult]) -> Option<crate::calibrate::SolveError> {
     result.outcome.as_ref().err().cloned()
 }
 
-fn from_validation(validation: &Validation) -> impl Iterator<Item = (Fault, Severity)> {
+pub(super) fn from_validation(validation: &Validation) -> impl Iterator<Item = (Fault, Severity)> {
     let halves = validation
         .split_half
         .as_ref()
@@ -195,7 +195,10 @@ impl Mended {
         first.remedy.as_ref().filter(|_| first.explains > MENDS_FROM)?;
         let session = mended_session(case.session, first, findings);
         let problem = problem_of(&session)?;
-        let results = solve_all(&problem, &Method::BALL, &mut Unwatched).ok()?;
+        let results = match session.target {
+            Target::Point => Problem::Point(problem.clone()).solve_all(&Method::POINT, &mut Unwatched).ok()?,
+            _ => solve_all(&problem, &Method::BALL, &mut Unwatched).ok()?,
+        };
         Some(Self { session, problem, results })
     }
 
@@ -216,5 +219,9 @@ fn mended_session(session: &Session, first: &Finding, findings: &[Finding]) -> S
 
 fn problem_of(session: &Session) -> Option<BallProblem> {
     let measured = measure(session, None, &mut Unwatched).ok()?;
-    ball_problem(session, &measured).ok()
+    match session::problem(session, &measured).ok()? {
+        Problem::Ball(ball) => Some(ball),
+        Problem::Point(tip) => Some(BallProblem { radius_mm: SIZE_FOR_A_TIP_MM, ..tip }),
+        Problem::Plate(_) => None,
+    }
 }

@@ -3,10 +3,11 @@
 use serde_json::{Map, Value, json};
 
 use crate::calibrate::{
-    Method, MethodResult, Mount, NoiseModel, Solution, StationSolution, Uncertainty, Warning, best_available,
+    Method, MethodResult, Mount, NoiseModel, PlatePoint, Solution, StationSolution, Uncertainty, Warning,
+    best_available,
 };
 use crate::diagnose::{Diagnosis, verdict_with};
-use crate::geometry::{Frame, Transform};
+use crate::geometry::{Base, Frame, Rigid, Transform};
 use crate::plan::Plan;
 use crate::session::Session;
 use crate::text;
@@ -96,6 +97,15 @@ fn solution_entry(session: &Session, solution: &Solution, diagnosis: Option<&Dia
         solution.radius.map_or(Value::Null, |radius| json!({ "radius_mm": radius.radius_mm, "std_mm": radius.std_mm })),
     );
     entry.insert("rotation_span_deg".to_owned(), json!(solution.rotation_span_rad.to_degrees()));
+    if let Some(plate) = &solution.plate {
+        entry.insert(
+            "plate".to_owned(),
+            json!({
+                names.plate: rigid(&plate.base_from_plate),
+                "starts": { "tried": plate.starts.num_tried, "agreed": plate.starts.num_agreed },
+            }),
+        );
+    }
     entry.insert(
         "stations".to_owned(),
         session
@@ -103,10 +113,11 @@ fn solution_entry(session: &Session, solution: &Solution, diagnosis: Option<&Dia
             .iter()
             .enumerate()
             .map(|(idx, station)| {
-                solution.stations.iter().find(|used| used.station_idx == idx).map_or_else(
-                    || json!({ "label": station.label, "used": false }),
-                    |used| station_entry(used, &names),
-                )
+                let used = solution.stations.iter().find(|used| used.station_idx == idx);
+                let on_plate = solution.plate.iter().flat_map(|plate| &plate.points);
+                used.map(|used| station_entry(used, &names, solution.method))
+                    .or_else(|| Some(point_entry(on_plate.clone().find(|point| point.station_idx == idx)?, &names)))
+                    .unwrap_or_else(|| json!({ "label": station.label, "used": false }))
             })
             .collect(),
     );
@@ -118,15 +129,24 @@ fn solution_entry(session: &Session, solution: &Solution, diagnosis: Option<&Dia
 struct Names {
     sensor: &'static str,
     target: &'static str,
+    plate: &'static str,
 }
 
 impl Names {
     const fn of(mount: Mount) -> Self {
         match mount {
-            Mount::OnFlange => Self { sensor: "flange_from_sensor", target: "target_in_base_mm" },
-            Mount::Fixed => Self { sensor: "base_from_sensor", target: "target_in_flange_mm" },
+            Mount::OnFlange => {
+                Self { sensor: "flange_from_sensor", target: "target_in_base_mm", plate: "base_from_plate" }
+            }
+            Mount::Fixed => {
+                Self { sensor: "base_from_sensor", target: "target_in_flange_mm", plate: "flange_from_plate" }
+            }
         }
     }
+}
+
+fn rigid(motion: &Rigid) -> Value {
+    transform(&Transform::<Base, Base>::from_rigid(*motion))
 }
 
 pub(super) fn transform<Dst: Frame, Src: Frame>(transform: &Transform<Dst, Src>) -> Value {
@@ -173,12 +193,27 @@ fn noise(noise: &NoiseModel) -> Value {
     })
 }
 
-fn station_entry(station: &StationSolution, names: &Names) -> Value {
+/// A station at a plate, by the point of its first capture that was used.
+fn point_entry(point: &PlatePoint, names: &Names) -> Value {
+    let mut entry = Map::new();
+    entry.insert("label".to_owned(), json!(point.label));
+    entry.insert("used".to_owned(), json!(true));
+    entry.insert("edge".to_owned(), json!(point.edge.symbol()));
+    entry.insert("target_in_sensor_mm".to_owned(), vector(point.point_in_sensor_mm));
+    entry.insert(names.target.to_owned(), vector(point.point_in_base_mm));
+    entry.insert("off_edge_mm".to_owned(), vector(point.off_edge_mm));
+    entry.insert("leave_one_out_mm".to_owned(), json!(point.leave_one_out_mm));
+    Value::Object(entry)
+}
+
+fn station_entry(station: &StationSolution, names: &Names, method: Method) -> Value {
     let mut entry = Map::new();
     entry.insert("label".to_owned(), json!(station.label));
     entry.insert("used".to_owned(), json!(true));
-    entry.insert("side".to_owned(), json!(station.side.symbol()));
-    entry.insert("side_cost_ratio".to_owned(), json!(station.side_cost_ratio));
+    if method != Method::FixedPoint {
+        entry.insert("side".to_owned(), json!(station.side.symbol()));
+        entry.insert("side_cost_ratio".to_owned(), json!(station.side_cost_ratio));
+    }
     entry.insert("target_in_sensor_mm".to_owned(), vector(station.target_in_sensor_mm));
     entry.insert(names.target.to_owned(), vector(station.target_in_base_mm));
     entry.insert("error_from_first_mm".to_owned(), vector(station.error_from_first_mm));

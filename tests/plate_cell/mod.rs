@@ -1,10 +1,10 @@
 //! A robot that looks at the two edges of a plate: problems with a known truth, for the tests and the bench of the plate's
 //! methods.
 
-use std::f64::consts::{FRAC_PI_4, PI};
+use std::f64::consts::{FRAC_PI_2, PI};
 
 use handeye::calibrate::{
-    BallProblem, Capture, Edge, Mount, Noise, PlateProblem, PlateStation, Problem, Reading, SideChoice, Station,
+    BallProblem, Capture, Edge, Mount, Noise, PlateProblem, PlateStation, Reading, SideChoice, Station,
 };
 use handeye::geometry::so3::exp;
 use handeye::geometry::{Flange, Rigid, Sensor, Transform, Vec3};
@@ -23,6 +23,8 @@ pub struct Cell {
     pub num_points: [usize; 2],
     /// Tilt and turn of the sensor about each axis, uniform within ± this, degrees.
     pub spread_deg: f64,
+    /// Angle between the laser line and an edge in the nominal view, degrees.
+    pub line_to_edge_deg: f64,
     /// Noise of a point along x and z of the sensor, mm.
     pub point_std_mm: f64,
     /// Noise of each coordinate of a reported position, mm.
@@ -42,6 +44,7 @@ impl Default for Cell {
         Self {
             num_points: [9, 9],
             spread_deg: 20.0,
+            line_to_edge_deg: 90.0,
             point_std_mm: 0.03,
             position_std_mm: 0.0,
             orientation_std_deg: 0.0,
@@ -72,6 +75,7 @@ fn mounted(random: &mut Random) -> Rigid {
 /// The pose that puts `point_in_sensor` on `point_in_base`, looking down at about the nominal orientation.
 fn view(
     cell: &Cell,
+    yaw: f64,
     flange_from_sensor: &Rigid,
     point_in_base: Vec3,
     point_in_sensor: Vec3,
@@ -79,8 +83,8 @@ fn view(
 ) -> Rigid {
     let spread = cell.spread_deg.to_radians();
     let tilt = Vec3::new(random.signed_unit(), random.signed_unit(), random.signed_unit()) * spread;
-    // Looking down, the laser line at 45° to both edges.
-    let rotation = exp(tilt) * exp(Vec3::z() * FRAC_PI_4) * exp(Vec3::x() * PI);
+    // Looking down.
+    let rotation = exp(tilt) * exp(Vec3::z() * yaw) * exp(Vec3::x() * PI);
     let base_from_sensor = Rigid::from_parts((point_in_base - rotation * point_in_sensor).into(), rotation);
     base_from_sensor * flange_from_sensor.inverse()
 }
@@ -124,20 +128,27 @@ fn noise(cell: &Cell) -> Noise {
 /// A plate seen from many sides. The same seed gives the same problem.
 #[must_use]
 pub fn simulated(cell: &Cell, seed: u64) -> Simulated {
+    simulated_with(cell, mounted(&mut Random::new(seed, 0)), seed)
+}
+
+/// The same by a sensor that is mounted as given.
+#[must_use]
+pub fn simulated_with(cell: &Cell, flange_from_sensor: Rigid, seed: u64) -> Simulated {
     let mut random = Random::new(seed, 1);
-    let flange_from_sensor = mounted(&mut random);
     let lying = exp(Vec3::new(0.1 * random.signed_unit(), 0.1 * random.signed_unit(), 0.0));
     let base_from_plate = Rigid::from_parts(Vec3::new(600.0, -150.0, 40.0).into(), lying);
     let mut stations = Vec::new();
     for (edge, num_points, along) in
         [(Edge::P, cell.num_points[0], Vec3::x()), (Edge::Q, cell.num_points[1], Vec3::y())]
     {
+        let from_p = cell.line_to_edge_deg.to_radians();
+        let yaw = if edge == Edge::P { from_p } else { FRAC_PI_2 - from_p };
         for idx in 0..num_points {
             let in_plate = along * (EDGE_MM * (0.05 + 0.9 * random.unit()));
             let in_base = base_from_plate.transform_point(&in_plate.into()).coords;
             let point_in_sensor = in_sensor(&mut random);
             // A fixed sensor sees a plate that the flange holds: as if the robot held the sensor, poses inverted.
-            let pose = view(cell, &flange_from_sensor, in_base, point_in_sensor, &mut random);
+            let pose = view(cell, yaw, &flange_from_sensor, in_base, point_in_sensor, &mut random);
             let pose = match cell.mount {
                 Mount::OnFlange => pose,
                 Mount::Fixed => pose.inverse(),
@@ -165,16 +176,22 @@ pub fn simulated(cell: &Cell, seed: u64) -> Simulated {
     Simulated { problem, flange_from_sensor, base_from_plate }
 }
 
-/// A tip seen from many sides, with the truth of the sensor and the tip.
+/// A tip seen from many sides, with the truth of the sensor.
 #[must_use]
-pub fn simulated_tip(cell: &Cell, seed: u64) -> (Problem, Rigid, Vec3) {
+pub fn simulated_tip(cell: &Cell, seed: u64) -> (BallProblem, Rigid) {
+    let flange_from_sensor = mounted(&mut Random::new(seed, 0));
+    (simulated_tip_with(cell, flange_from_sensor, seed), flange_from_sensor)
+}
+
+/// The same by a sensor that is mounted as given.
+#[must_use]
+pub fn simulated_tip_with(cell: &Cell, flange_from_sensor: Rigid, seed: u64) -> BallProblem {
     let mut random = Random::new(seed, 2);
-    let flange_from_sensor = mounted(&mut random);
     let tip_in_base = Vec3::new(520.0, 80.0, 60.0);
     let stations = (0..cell.num_points[0])
         .map(|idx| {
             let point_in_sensor = in_sensor(&mut random);
-            let pose = view(cell, &flange_from_sensor, tip_in_base, point_in_sensor, &mut random);
+            let pose = view(cell, 0.0, &flange_from_sensor, tip_in_base, point_in_sensor, &mut random);
             Station {
                 idx,
                 label: format!("{}", idx + 1),
@@ -183,15 +200,14 @@ pub fn simulated_tip(cell: &Cell, seed: u64) -> (Problem, Rigid, Vec3) {
             }
         })
         .collect();
-    let problem = BallProblem {
+    BallProblem {
         radius_mm: 0.0,
         radius_std_mm: None,
         mount: cell.mount,
         noise: noise(cell),
         reference_distance_mm: Some(RANGE_MM),
         stations,
-    };
-    (Problem::Point(problem), flange_from_sensor, tip_in_base)
+    }
 }
 
 /// How far a calibration is from the truth: of the translation, mm, and of the rotation, degrees.

@@ -5,7 +5,6 @@
 use handeye::calibrate::{Edge, Problem, best_available};
 use handeye::geometry::{Flange, Sensor, Transform, Vec3, so3};
 use handeye::session::{self, measure, samples};
-use handeye::verify::study::solved_calibrations;
 use handeye::verify::{
     Evaluation, GivenMatrix, MatrixDifference, MatrixRefusal, Measurement, NotEvaluated, Origin, Stability, TargetCase,
     evaluate, parse_matrix, verify,
@@ -273,14 +272,12 @@ fn every_calibration_meets_every_target() {
     let cell = PaperCell::noisy(3);
     let targets = vec![case("tip", cell.tip_target(16)), case("plate", cell.plate_target())];
     let own = best_available(&targets[0].results).expect("the tip is solved").flange_from_sensor;
-    let mut calibrations = solved_calibrations(&targets);
     let given = handeye::verify::Calibration {
         origin: Origin::Given { name: "truth".to_owned() },
         flange_from_sensor: PaperCell::flange_from_sensor(),
         workspace_point_std_mm: None,
     };
-    calibrations.push(given);
-    let verification = verify(targets, calibrations, &mut Unwatched).expect("not cancelled");
+    let verification = verify(targets, &[given], &mut Unwatched).expect("not cancelled");
     assert_eq!(verification.targets.len(), 2);
     assert!(verification.calibrations[0].origin.has_seen(0) && !verification.calibrations[0].origin.has_seen(1));
     assert_eq!(verification.calibrations[0].flange_from_sensor, own);
@@ -295,6 +292,12 @@ fn every_calibration_meets_every_target() {
             assert!(figures.rms_mm < 0.2, "{calibration_idx} on {target_idx}: {figures:?}");
         }
     }
+    assert_eq!(verification.is_borne_out(), Some(true));
+    // The tip's, the plate's best, both together, the one given.
+    assert_eq!(verification.calibrations.len(), 4);
+    assert!(verification.calibrations[2].origin.has_seen(0) && verification.calibrations[2].origin.has_seen(1));
+    let std_mm = |idx: usize| verification.calibrations[idx].workspace_point_std_mm.expect("stated");
+    assert!(std_mm(2) < std_mm(0).min(std_mm(1)), "more data, less doubt");
     let reference = verification.reference_point_in_sensor_mm();
     assert!((reference.z - 172.0).abs() < 3.0, "{reference}");
 }

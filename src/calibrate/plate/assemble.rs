@@ -44,8 +44,7 @@ impl Found<'_> {
             let start = PlateState { flange_from_sensor: self.best.flange_from_sensor, ..self.minimum.unknowns };
             published(&self.points, &start, |_| 1.0)?
         } else {
-            let covariance = inverse_of(&self.minimum.sums.hessian)?;
-            PlateRefit { state: self.minimum.unknowns, sensor_covariance: sensor_block(&covariance) }
+            PlateRefit { state: self.minimum.unknowns, covariance: inverse_of(&self.minimum.sums.hessian)? }
         };
         let state = found.state.towards(&self.points);
         let reduced = PlateReduced {
@@ -66,7 +65,7 @@ impl Found<'_> {
         let uncertainty = (2 * reduced.points.len() > NUM_UNKNOWNS).then(|| {
             let degrees_of_freedom = self.noise.degrees_of_freedom;
             of_sensor(
-                &(found.sensor_covariance * doubt_in_the_noise(degrees_of_freedom)),
+                &(sensor_block(&found.covariance) * doubt_in_the_noise(degrees_of_freedom)),
                 degrees_of_freedom,
                 &state.flange_from_sensor,
                 reference_point,

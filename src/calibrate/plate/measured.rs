@@ -10,8 +10,6 @@ use super::points::EdgePoint;
 
 /// With three points an edge the unknowns are just as many as the equations.
 pub const MIN_POINTS: usize = 3;
-/// A point is not known better than this whatever its profile says, mm.
-const LEAST_STD_MM: f64 = 1e-4;
 
 /// A point with where it is from.
 #[derive(Clone, Copy, Debug)]
@@ -48,7 +46,7 @@ pub(super) fn measured(problem: &PlateProblem) -> Result<(Vec<Measured<'_>>, Pos
                     information: Matrix2::identity(),
                 },
                 covariance_mm2: match &capture.reading {
-                    Reading::Edge(edge) => Some(edge.covariance + Matrix2::identity() * (LEAST_STD_MM * LEAST_STD_MM)),
+                    Reading::Edge(edge) => Some(edge.covariance),
                     Reading::Arc(_) | Reading::Refused(_) | Reading::Point(_) => None,
                 },
                 num_at_pose: 1.0,

@@ -5,6 +5,7 @@
 //! edges.
 
 pub mod descent;
+pub mod nine_elements;
 pub mod orthogonal;
 pub mod points;
 
@@ -62,6 +63,21 @@ pub fn solve(problem: &PlateProblem, method: Method) -> Result<Solution, SolveEr
     let start = start::state_at(&points, &best.flange_from_sensor).ok_or(SolveError::Diverged)?;
     let Settled { points, minimum, noise } = bundle::settle(&measured, start, PlateNoise::of(problem))?;
     Found { method, problem, measured, points, poses, minimum, noise, best, starts: agreed, warnings }.into_solution()
+}
+
+/// RMS distance of the points from their edges by the bundle, all weighed alike and from a few starts only, mm: enough to
+/// tell which of many readings of the poses fits. `None` if none does.
+#[must_use]
+pub fn rough_fit_mm(problem: &PlateProblem) -> Option<f64> {
+    /// Nearly every start leads to the one minimum.
+    const EVERY: usize = 8;
+    let (measured, _) = measured(problem).ok()?;
+    let points: Vec<Point> = measured.iter().map(|measured| measured.point).collect();
+    let costs = start::starts(problem).into_iter().step_by(EVERY).filter_map(|start| bundle_at(&points, &start));
+    let least = costs.map(|candidate| candidate.cost).min_by(f64::total_cmp)?;
+    #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 points")]
+    let num_points = points.len() as f64;
+    Some((least / num_points).sqrt())
 }
 
 /// Where one start led.

@@ -11,8 +11,11 @@ use super::points::{EdgePoint, NUM_UNKNOWNS, PlateState};
 const USUAL_POSITION_STD_MM: f64 = 0.03;
 const USUAL_ORIENTATION_STD_RAD: f64 = 1e-4;
 const USUAL_POINT_STD_MM: f64 = 0.03;
-/// The search for the scale ends within this factor of it.
+/// No robot and no profiler is better than this, mm: it keeps exact data weighable.
+const LEAST_STD_MM: f64 = 1e-4;
+/// The search for the scale ends within this factor of it, or where nothing is left of it.
 const SCALE_WITHIN: f64 = 1e-9;
+const NO_SCALE: f64 = 1e-12;
 
 /// A noise of the robot and of the sensor: variances, mm² and rad².
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,7 +92,8 @@ impl PlateNoise {
     /// together as their mean does.
     pub fn covariance_in_base(&self, point: &Measured, flange_from_sensor: &Rigid) -> Mat3 {
         let known = covariance(&self.known, point, flange_from_sensor, self.mount);
-        known + covariance(&self.open, point, flange_from_sensor, self.mount) * self.scale
+        let least = Mat3::identity() * (LEAST_STD_MM * LEAST_STD_MM);
+        known + least + covariance(&self.open, point, flange_from_sensor, self.mount) * self.scale
     }
 
     /// Finds the scale of what is not known so that the residuals are as large as they should be, and compares them with
@@ -119,15 +123,14 @@ impl PlateNoise {
         }
         // χ² falls as the scale grows; it has to be what the equations left over let one expect.
         let at = |scale: f64| chi_square(&Self { scale, ..*self });
-        let (mut low, mut high) = (0.0, 1.0);
-        while at(high) > freedom && high < f64::MAX.sqrt() {
+        let (mut low, mut high) = (0.0_f64, 1.0_f64);
+        while at(high) > freedom && high < NO_SCALE.recip() {
             low = high;
             high *= 10.0;
         }
-        if low == 0.0 {
-            // A residual of nothing has a scale of nothing; so it is bracketed by factors from above.
+        if low < high * 0.01 {
             low = high;
-            while at(low) < freedom && low > f64::MIN_POSITIVE.sqrt() {
+            while at(low) < freedom && low > NO_SCALE {
                 high = low;
                 low *= 0.1;
             }

@@ -83,7 +83,7 @@ impl Unknowns<NUM_UNKNOWNS> for PlateState {
 }
 
 /// Rad, and mm over [`LEVER_MM`].
-pub(super) fn tangent_size(tangent: &Vector6<f64>) -> f64 {
+pub(in crate::calibrate) fn tangent_size(tangent: &Vector6<f64>) -> f64 {
     let (rotation, translation) = se3::split(tangent);
     rotation.norm() + translation.norm() / LEVER_MM
 }

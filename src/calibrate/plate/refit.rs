@@ -1,13 +1,13 @@
 //! What is left of a plate's data once a method has settled: enough to solve again without some stations.
 
-use nalgebra::{Matrix6, Vector6};
+use nalgebra::{Matrix6, SMatrix, Vector6};
 
 use crate::calibrate::{Edge, Method, SolveError};
 use crate::geometry::{Rigid, se3};
 
 use super::descent::{Sums, Unknowns, descend, inverse_of};
 use super::measured::MIN_POINTS;
-use super::points::{EdgePoint, PlateState, sensor_block, sums_of, tangent_size};
+use super::points::{EdgePoint, NUM_UNKNOWNS, PlateState, sums_of, tangent_size};
 use super::{bundle, orthogonal};
 
 /// The data at the minimum: each point with what it says across its edge.
@@ -28,8 +28,8 @@ pub struct PlateReduced {
 pub struct PlateRefit {
     /// The unknowns.
     pub state: PlateState,
-    /// Covariance of (rotation, translation) of the sensor, a right perturbation along the sensor's axes.
-    pub sensor_covariance: Matrix6<f64>,
+    /// Their covariance, as right perturbations along the axes of sensor and plate.
+    pub covariance: SMatrix<f64, NUM_UNKNOWNS, NUM_UNKNOWNS>,
 }
 
 /// The plate alone.
@@ -62,8 +62,7 @@ impl PlateReduced {
             return published(&self.points, &self.state, times);
         }
         let found = bundle::minimise(&self.points, self.state, times)?;
-        let covariance = inverse_of(&found.sums.hessian)?;
-        Ok(PlateRefit { state: found.unknowns, sensor_covariance: sensor_block(&covariance) })
+        Ok(PlateRefit { state: found.unknowns, covariance: inverse_of(&found.sums.hessian)? })
     }
 
     /// Solves again with the stations that `is_used` names.
@@ -102,8 +101,8 @@ pub(super) fn published(
             cost: sums.cost,
         }
     };
-    let base_from_plate = descend(on_plate, PlateOnly(start.base_from_plate))?.unknowns.0;
-    let state = PlateState { flange_from_sensor, base_from_plate };
+    let plate = descend(on_plate, PlateOnly(start.base_from_plate))?;
+    let state = PlateState { flange_from_sensor, base_from_plate: plate.unknowns.0 };
     let mut sensor_covariance = Matrix6::zeros();
     for (point, change) in points.iter().zip(orthogonal::change_by_points(points, &flange_from_sensor, &inverse, times))
     {
@@ -111,5 +110,19 @@ pub(super) fn published(
         let covariance = point.information.try_inverse().ok_or(SolveError::Diverged)?;
         sensor_covariance += across * covariance * across.transpose();
     }
-    Ok(PlateRefit { state, sensor_covariance })
+    // The plate follows the sensor, and has a covariance of its own besides.
+    let coupling = sums_of(points, &state, times).hessian.fixed_view::<6, 6>(6, 0).into_owned();
+    let of_plate = inverse_of(&plate.sums.hessian)?;
+    let follows = -of_plate * coupling;
+    let mut covariance = SMatrix::<f64, NUM_UNKNOWNS, NUM_UNKNOWNS>::zeros();
+    let by_plate = follows * sensor_covariance;
+    for (row, column, block) in [
+        (0, 0, sensor_covariance),
+        (6, 0, by_plate),
+        (0, 6, by_plate.transpose()),
+        (6, 6, of_plate + by_plate * follows.transpose()),
+    ] {
+        covariance.fixed_view_mut::<6, 6>(row, column).copy_from(&block);
+    }
+    Ok(PlateRefit { state, covariance })
 }

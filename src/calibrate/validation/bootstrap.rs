@@ -5,7 +5,7 @@ use crate::calibrate::uncertainty::distance_quantile;
 use crate::geometry::stats::{self, SplitMix};
 use crate::watch::{Cancelled, Watch};
 
-use super::workspace_point;
+use super::{Data, workspace_point};
 
 /// Fewer draws than this show no spread.
 const MIN_DRAWS: usize = 20;
@@ -35,30 +35,21 @@ pub fn bootstrap(
     seed: u64,
     watch: &mut dyn Watch,
 ) -> Result<Bootstrap, Cancelled> {
-    let Some(reduced) = &solution.reduced else {
-        // A plate's points are not reduced to stations that could be drawn.
-        return Ok(Bootstrap {
-            distances_mm: Vec::new(),
-            std_mm: f64::NAN,
-            within_95_mm: f64::NAN,
-            num_failed: num_draws,
-        });
-    };
+    let data = Data::of(solution);
+    let num_stations = data.map_or(0, Data::num_stations);
     let reference_point =
         solution.uncertainty.as_ref().map(|uncertainty| uncertainty.reference_point_in_sensor_mm).unwrap_or_default();
-    let here = workspace_point(&reduced.state, reference_point);
+    let here = workspace_point(solution.flange_from_sensor.rigid(), reference_point);
     let mut random = SplitMix::new(seed);
     let mut distances_mm = Vec::with_capacity(num_draws);
     for draw in 0..num_draws {
         watch.report(draw, num_draws)?;
-        let mut times = vec![0.0; reduced.num_stations];
-        for _ in 0..reduced.num_stations {
-            times[random.below(reduced.num_stations)] += 1.0;
+        let mut times = vec![0.0; num_stations];
+        for _ in 0..num_stations {
+            times[random.below(num_stations)] += 1.0;
         }
-        if let Ok(minimum) = reduced.solve_with_times(|station| times[station])
-            && minimum.converged
-        {
-            distances_mm.push((workspace_point(&minimum.state, reference_point) - here).norm());
+        if let Some(again) = data.and_then(|data| data.solve_with_times(|station| times[station])) {
+            distances_mm.push((workspace_point(&again.flange_from_sensor, reference_point) - here).norm());
         }
     }
     distances_mm.sort_by(f64::total_cmp);

@@ -2,12 +2,13 @@
 
 use nalgebra::SMatrix;
 
-use crate::calibrate::Solution;
 use crate::calibrate::observation::{NUM_UNKNOWNS, State};
+use crate::calibrate::plate::PlateRefit;
 use crate::calibrate::reduced::Reduced;
 use crate::calibrate::solver::{Hessian, covariance_for_unit_noise};
+use crate::calibrate::{PlateFound, Solution};
 use crate::geometry::so3::hat;
-use crate::geometry::{Mat3, stats};
+use crate::geometry::{Mat3, Vec3, stats};
 
 use super::leave_one_out::{information_and_pull_in_base, minima_without_each};
 use super::workspace_point;
@@ -30,10 +31,17 @@ pub struct Influence {
 
 /// One entry a station; `None` where nothing can be left out.
 pub(super) fn influence(solution: &Solution) -> Option<Vec<Influence>> {
-    let reduced = solution.reduced.as_ref()?;
     let reference_point = solution.uncertainty.as_ref()?.reference_point_in_sensor_mm;
+    match (&solution.reduced, &solution.plate) {
+        (Some(reduced), _) => of_stations(solution, reduced, reference_point),
+        (None, Some(plate)) => of_plate(plate, reference_point),
+        (None, None) => None,
+    }
+}
+
+fn of_stations(solution: &Solution, reduced: &Reduced, reference_point: Vec3) -> Option<Vec<Influence>> {
     let factor = reduced.variance_factor?;
-    let here = workspace_point(&reduced.state, reference_point);
+    let here = workspace_point(&reduced.state.flange_from_sensor, reference_point);
     minima_without_each(reduced)
         .into_iter()
         .zip(&solution.stations)
@@ -47,10 +55,39 @@ pub(super) fn influence(solution: &Solution) -> Option<Vec<Influence>> {
                 label: station.label.clone(),
                 studentised_residual: (chi_square / 3.0).sqrt(),
                 p_value: stats::chi_squared_p_value(chi_square, 3.0),
-                moves_workspace_point_mm: (workspace_point(&minimum.state, reference_point) - here).norm(),
+                moves_workspace_point_mm: (workspace_point(&minimum.state.flange_from_sensor, reference_point) - here)
+                    .norm(),
             })
         })
         .collect()
+}
+
+/// The same for a plate: each point of a station against the edge of the solution made without it.
+fn of_plate(plate: &PlateFound, reference_point: Vec3) -> Option<Vec<Influence>> {
+    let reduced = &plate.reduced;
+    let here = workspace_point(&reduced.state.flange_from_sensor, reference_point);
+    let of_station = |(station, refit): (usize, Option<PlateRefit>)| {
+        let refit = refit?;
+        let own = || reduced.points.iter().zip(&plate.points).filter(|(point, _)| point.station == station);
+        let (_, named) = own().next()?;
+        let (mut chi_square, mut freedom) = (0.0, 0.0);
+        for (point, _) in own() {
+            let by_unknowns = refit.state.by_unknowns(point);
+            let predicted = by_unknowns * refit.covariance * by_unknowns.transpose();
+            let expected = predicted + point.information.try_inverse()?;
+            let off = refit.state.off_edge(point);
+            chi_square += off.dot(&(expected.try_inverse()? * off));
+            freedom += 2.0;
+        }
+        Some(Influence {
+            station_idx: named.station_idx,
+            label: named.label.clone(),
+            studentised_residual: (chi_square / freedom).sqrt(),
+            p_value: stats::chi_squared_p_value(chi_square, freedom),
+            moves_workspace_point_mm: (workspace_point(&refit.state.flange_from_sensor, reference_point) - here).norm(),
+        })
+    };
+    reduced.without_each().into_iter().enumerate().map(of_station).collect()
 }
 
 /// The station's ball against that of the others, squared, in the metric of what may be expected of it.

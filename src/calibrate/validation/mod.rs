@@ -13,10 +13,12 @@ pub use leave_one_out::{MIN_STATIONS, leave_one_out, station_ball};
 pub use normality::Normality;
 pub use split_half::SplitHalf;
 
-use crate::geometry::Vec3;
+use nalgebra::Matrix6;
 
-use super::Solution;
-use super::observation::State;
+use crate::geometry::{Rigid, Vec3};
+
+use super::solver::{covariance_for_unit_noise, sensor_block};
+use super::{PlateReduced, Reduced, Solution, plate};
 
 /// How much a solution can be relied on, beyond its residual and its σ.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,11 +37,60 @@ pub fn validate(solution: &Solution) -> Option<Validation> {
     Some(Validation {
         influence: influence::influence(solution)?,
         split_half: split_half::split_half(solution),
-        normality: normality::normality(solution.reduced.as_ref()?),
+        normality: normality::normality(solution),
     })
 }
 
-/// The workspace point in the flange for some unknowns, mm.
-fn workspace_point(state: &State, reference_point_in_sensor_mm: Vec3) -> Vec3 {
-    state.flange_from_sensor.transform_point(&reference_point_in_sensor_mm.into()).coords
+/// The workspace point in the flange for a calibration, mm.
+fn workspace_point(flange_from_sensor: &Rigid, reference_point_in_sensor_mm: Vec3) -> Vec3 {
+    flange_from_sensor.transform_point(&reference_point_in_sensor_mm.into()).coords
+}
+
+/// What can be solved again with other stations, whatever the target is.
+#[derive(Clone, Copy)]
+enum Data<'a> {
+    Points(&'a Reduced),
+    Plate(&'a PlateReduced),
+}
+
+/// A calibration from some of the stations, and the covariance of (rotation, translation), a right perturbation along the
+/// sensor's axes.
+struct Again {
+    flange_from_sensor: Rigid,
+    covariance: Matrix6<f64>,
+}
+
+impl<'a> Data<'a> {
+    fn of(solution: &'a Solution) -> Option<Self> {
+        let of_plate = || solution.plate.as_ref().map(|plate| Self::Plate(&plate.reduced));
+        solution.reduced.as_ref().map(Self::Points).or_else(of_plate)
+    }
+
+    const fn num_stations(self) -> usize {
+        match self {
+            Self::Points(reduced) => reduced.num_stations,
+            Self::Plate(reduced) => reduced.num_stations,
+        }
+    }
+
+    /// `None` if what is left does not do.
+    fn solve_with_times(self, times: impl Fn(usize) -> f64 + Copy) -> Option<Again> {
+        match self {
+            Self::Points(reduced) => {
+                let minimum = reduced.solve_with_times(times).ok().filter(|minimum| minimum.converged)?;
+                let covariance = covariance_for_unit_noise(&minimum.hessian).ok()? * reduced.variance_factor?;
+                Some(Again {
+                    flange_from_sensor: minimum.state.flange_from_sensor,
+                    covariance: sensor_block(&covariance),
+                })
+            }
+            Self::Plate(reduced) => {
+                let refit = reduced.solve_with_times(times).ok()?;
+                Some(Again {
+                    flange_from_sensor: refit.state.flange_from_sensor,
+                    covariance: plate::points::sensor_block(&refit.covariance),
+                })
+            }
+        }
+    }
 }

@@ -6,6 +6,7 @@
 
 use crate::calibrate::observation::CentreObservation;
 use crate::calibrate::reduced::Reduced;
+use crate::calibrate::{PlateReduced, Solution};
 use crate::geometry::{Mat3, Vec3, stats};
 
 /// With fewer residuals a test says nothing.
@@ -21,8 +22,12 @@ pub struct Normality {
 }
 
 /// `None` with too few residuals, or if they are exactly zero.
-pub(super) fn normality(reduced: &Reduced) -> Option<Normality> {
-    let mut residuals = whitened_residuals(reduced);
+pub(super) fn normality(solution: &Solution) -> Option<Normality> {
+    let mut residuals = match (&solution.reduced, &solution.plate) {
+        (Some(reduced), _) => whitened_residuals(reduced),
+        (None, Some(plate)) => whitened_distances(&plate.reduced),
+        (None, None) => return None,
+    };
     if residuals.len() < MIN_RESIDUALS {
         return None;
     }
@@ -58,6 +63,16 @@ fn whitened_residuals(reduced: &Reduced) -> Vec<f64> {
         }
     }
     residuals
+}
+
+/// The distances of a plate's points from their edges, along two axes each, over their σ.
+fn whitened_distances(reduced: &PlateReduced) -> Vec<f64> {
+    let whitened = reduced.points.iter().filter_map(|point| {
+        let factor = point.information.cholesky()?;
+        let whitened = factor.l().transpose() * reduced.state.off_edge(point);
+        Some([whitened.x, whitened.y])
+    });
+    whitened.flatten().collect()
 }
 
 /// The likeliest shift that all captures of a station share.

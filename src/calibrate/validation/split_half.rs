@@ -1,11 +1,10 @@
 //! Two halves of the stations against each other: on real data they differed by millimetres where the residual was tenths.
 
 use crate::calibrate::Solution;
-use crate::calibrate::solver::{covariance_for_unit_noise, sensor_block};
 use crate::calibrate::uncertainty::{distance_quantile, point_by_sensor};
 use crate::geometry::stats::{self, SplitMix};
 
-use super::workspace_point;
+use super::{Data, workspace_point};
 
 /// A half needs four stations.
 const MIN_STATIONS: usize = 8;
@@ -29,28 +28,28 @@ pub struct SplitHalf {
 
 /// `None` with too few stations, or if hardly any half can be solved.
 pub(super) fn split_half(solution: &Solution) -> Option<SplitHalf> {
-    let reduced = solution.reduced.as_ref()?;
-    if reduced.num_stations < MIN_STATIONS {
+    let data = Data::of(solution)?;
+    let num_stations = data.num_stations();
+    if num_stations < MIN_STATIONS {
         return None;
     }
     let reference_point = solution.uncertainty.as_ref()?.reference_point_in_sensor_mm;
-    let factor = reduced.variance_factor?;
     let by_sensor = point_by_sensor(reference_point);
     let mut random = SplitMix::new(1);
-    let mut order: Vec<usize> = (0..reduced.num_stations).collect();
+    let mut order: Vec<usize> = (0..num_stations).collect();
     let (mut disagreements_mm, mut expected_mm) = (Vec::new(), Vec::new());
     for _ in 0..NUM_SPLITS {
         for idx in (1..order.len()).rev() {
             order.swap(idx, random.below(idx + 1));
         }
-        let first_half = &order[..reduced.num_stations / 2];
+        let first_half = &order[..num_stations / 2];
         let solved = |is_first: bool| {
-            let minimum = reduced.solve_with(|station| first_half.contains(&station) == is_first).ok()?;
-            let covariance = covariance_for_unit_noise(&minimum.hessian).ok()?;
-            let of_point = by_sensor * sensor_block(&covariance) * by_sensor.transpose() * factor;
-            let rotation = minimum.state.flange_from_sensor.rotation.to_rotation_matrix();
+            let is_used = |station: usize| first_half.contains(&station) == is_first;
+            let half = data.solve_with_times(|station| if is_used(station) { 1.0 } else { 0.0 })?;
+            let of_point = by_sensor * half.covariance * by_sensor.transpose();
+            let rotation = half.flange_from_sensor.rotation.to_rotation_matrix();
             let in_flange = rotation.matrix() * of_point * rotation.matrix().transpose();
-            Some((workspace_point(&minimum.state, reference_point), in_flange))
+            Some((workspace_point(&half.flange_from_sensor, reference_point), in_flange))
         };
         let Some(((point, covariance), (other_point, other_covariance))) = solved(true).zip(solved(false)) else {
             continue;

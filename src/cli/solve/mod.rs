@@ -22,6 +22,7 @@ use super::{EXIT_NOTHING_COMPUTED, EXIT_WRONG_INPUT, fail};
 
 mod diagnosis;
 mod paper_tables;
+mod stations;
 mod tables;
 
 /// Arguments of `handeye solve`.

@@ -6,8 +6,10 @@ use crate::app::compare::{distance_from_truth, improvement, maximum_error_mm};
 use crate::calibrate::{Method, MethodResult, Mount, Solution, best_available};
 use crate::diagnose::{Diagnosis, verdict_with};
 use crate::report::digits::{decimals_for, fixed, signed};
-use crate::session::Session;
+use crate::session::{Session, Target};
 use crate::text;
+
+use super::stations::stations;
 
 /// Everything about the results, for a terminal 100 columns wide.
 ///
@@ -86,10 +88,20 @@ fn overview(out: &mut String, session: &Session, results: &[MethodResult]) {
         )
         .ok();
     }
-    out.push_str(
-        "max: largest coordinate relative to the first station · RMS: scatter of the ball about its place, 3D\n\
-         left out: each station predicted by the others, RMS · σ point: 1 σ of a point in the workspace, 3D\n",
-    );
+    out.push_str(match session.target {
+        Target::RightAnglePlate => {
+            "max: largest distance of a point from its edge · RMS: of these distances\n\
+             left out: each station predicted by the others, RMS · σ point: 1 σ of a point in the workspace, 3D\n"
+        }
+        Target::Point => {
+            "max: largest coordinate relative to the first station · RMS: scatter of the tip about its place, 3D\n\
+             left out: each station predicted by the others, RMS · σ point: 1 σ of a point in the workspace, 3D\n"
+        }
+        Target::Ball { .. } | Target::Workpiece | Target::Rgbd { .. } => {
+            "max: largest coordinate relative to the first station · RMS: scatter of the ball about its place, 3D\n\
+             left out: each station predicted by the others, RMS · σ point: 1 σ of a point in the workspace, 3D\n"
+        }
+    });
     if let Some(improvement) = improvement(results)
         && let Some(percent) = improvement.percent()
     {
@@ -110,31 +122,7 @@ fn method_section(out: &mut String, session: &Session, solution: &Solution, diag
     let method: Method = solution.method;
     writeln!(out, "\n{} ({})", text::method_name(method), method.id()).ok();
     verdict_and_calibration(out, session, solution, diagnosis);
-    out.push_str(
-        "  station  side      ball in sensor / mm            ball in base / mm          error from first / mm    left out\n",
-    );
-    for station in &solution.stations {
-        let (in_sensor, in_base, error) =
-            (station.target_in_sensor_mm, station.target_in_base_mm, station.error_from_first_mm);
-        let f = |value: f64| fixed(value, 3);
-        writeln!(
-            out,
-            "  {:<8} {:>3} {:>9} {:>9} {:>9}  {:>9} {:>9} {:>9}  {:>7} {:>7} {:>7}  {:>8}",
-            station.label,
-            station.side.symbol(),
-            f(in_sensor.x),
-            f(in_sensor.y),
-            f(in_sensor.z),
-            f(in_base.x),
-            f(in_base.y),
-            f(in_base.z),
-            signed(error.x, 3),
-            signed(error.y, 3),
-            signed(error.z, 3),
-            station.leave_one_out_mm.map_or_else(|| "–".to_owned(), f),
-        )
-        .ok();
-    }
+    stations(out, solution);
     for warning in &solution.warnings {
         writeln!(out, "  ! [{}] {} {}", warning.code(), text::warning_message(warning), text::warning_remedy(warning))
             .ok();

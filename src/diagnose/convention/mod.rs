@@ -86,6 +86,15 @@ pub fn rank(session: &Session, problem: &BallProblem, watch: &mut dyn Watch) -> 
     Doctor::new(session, problem).rank(watch)
 }
 
+/// The ways with at most one change from what is given, for data that are none of a ball: told by the first captures of some
+/// stations.
+pub(super) fn of_one_change(session: &Session, station_idxs: &[usize]) -> Vec<PoseReading> {
+    let sections: Vec<Section> = station_idxs.iter().map(|station_idx| Section::of_pose(*station_idx)).collect();
+    let mut readings = candidates(session, &sections);
+    readings.retain(|reading| reading.num_changes() <= 1);
+    readings
+}
+
 struct Doctor<'a> {
     session: &'a Session,
     trials: Trials,

@@ -208,7 +208,7 @@ impl PoseReading {
     }
 
     /// A capture's `base_from_flange` read in this way.
-    pub(super) fn pose(&self, station: &Station, station_idx: usize, capture_idx: usize) -> Rigid {
+    pub(in crate::diagnose) fn pose(&self, station: &Station, station_idx: usize, capture_idx: usize) -> Rigid {
         let given = &station.captures[capture_idx].base_from_flange;
         let rotation = match &self.rotation {
             RotationReading::AsGiven => given.rotation(),

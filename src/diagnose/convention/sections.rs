@@ -30,6 +30,11 @@ pub(super) struct Section {
 }
 
 impl Section {
+    /// Of a station's first capture, for its pose alone.
+    pub const fn of_pose(station_idx: usize) -> Self {
+        Self { station_idx, capture_idx: 0, x_mm: 0.0, size_y_mm: 0.0, z_mm: 0.0, weight_of_y: 1.0, side: None }
+    }
+
     pub fn centre(&self, side: Side) -> Vec3 {
         Vec3::new(self.x_mm, side.sign() * self.size_y_mm, self.z_mm)
     }

@@ -41,9 +41,9 @@ pub const MAX_CAPTURES: &str = "Most profiles";
 /// Field.
 pub const STOP_RULE: &str = "Stop once";
 /// Choice.
-pub const STOP_PEAK: &str = "the peak is known";
+pub const STOP_PEAK: &str = "peak known";
 /// Choice.
-pub const STOP_PUBLISHED: &str = "l ≥ R, as published";
+pub const STOP_PUBLISHED: &str = "l ≥ R (paper)";
 /// Field.
 pub const PEAK_STD: &str = "Peak known to";
 

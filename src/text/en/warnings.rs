@@ -84,7 +84,10 @@ pub const fn warning_remedy(warning: &Warning) -> &'static str {
             "Record a sweep across the ball at each station, or place the line so that the section is about 0.8 of the radius."
         }
         Warning::ArcLargerThanBall { .. } => "Check the ball's radius and the profile's scale.",
-        Warning::CaptureRefused { .. } => "Look at the profile in Arcs; capture it again with the ball in view.",
+        Warning::CaptureRefused { .. } => "Look at the profile in Arcs; capture it again with the target in view.",
+        Warning::StationSkipped { needed: ..=1, .. } => {
+            "Look at its profile in Arcs; capture it again with the target in view."
+        }
         Warning::StationSkipped { .. } => "Record a sweep across the ball at this station.",
         Warning::TravelOffNormal { .. } => {
             "Let the robot step along the calibrated laser normal; the whole-curve method allows for the angle."

@@ -60,6 +60,11 @@ fn small_button(ui: &mut Ui, label: &str, name: &str) -> Response {
     response
 }
 
+/// Offers to connect again at once, below what happened; a simulated cell has nothing to be mended.
+fn retries(ui: &mut Ui, name: &str, shape: model::Lamp, is_practice: bool) -> bool {
+    shape == model::Lamp::Bad && !is_practice && ui.scope(|ui| small_button(ui, words::RETRY, name)).inner.clicked()
+}
+
 fn robot(ui: &mut Ui, desk: &mut Desk<'_>) {
     let cell = desk.view.cell;
     let (shape, word, remedy) = model::robot_lamp(cell);
@@ -68,6 +73,7 @@ fn robot(ui: &mut Ui, desk: &mut Desk<'_>) {
     let is_off = cell.robot.state == LinkState::Off;
     let is_practice = cell.is_practice;
     let mut command = None;
+    let mut wants_again = false;
     let right = |ui: &mut Ui| {
         if is_replay {
             ui.label(theme::dim(ui, words::RECORDED));
@@ -75,12 +81,6 @@ fn robot(ui: &mut Ui, desk: &mut Desk<'_>) {
         }
         if !is_off && !is_practice && small_button(ui, words::DISCONNECT, words::DISCONNECT_ROBOT).clicked() {
             command = Some(CellCommand::DisconnectRobot);
-        }
-        let setup = cell.robot.setup.as_ref().filter(|_| shape == model::Lamp::Bad && !is_practice);
-        if let Some(setup) = setup
-            && small_button(ui, words::RETRY, words::RETRY_ROBOT).clicked()
-        {
-            command = Some(CellCommand::ConnectRobot(setup.clone()));
         }
         lamp(ui, shape, word, words::ROBOT);
     };
@@ -90,6 +90,7 @@ fn robot(ui: &mut Ui, desk: &mut Desk<'_>) {
                 let palette = theme::palette(ui);
                 let color = if shape == model::Lamp::Bad { palette.bad } else { palette.warn };
                 remark(ui, "!", remedy, color);
+                wants_again = retries(ui, words::RETRY_ROBOT, shape, is_practice);
             }
             if is_off && !is_replay {
                 robot_form(ui, desk);
@@ -98,6 +99,9 @@ fn robot(ui: &mut Ui, desk: &mut Desk<'_>) {
             }
         });
     });
+    if wants_again {
+        command = cell.robot.setup.clone().map(CellCommand::ConnectRobot);
+    }
     if let Some(command) = command {
         desk.ask(command);
     }
@@ -171,6 +175,7 @@ fn profiler(ui: &mut Ui, desk: &mut Desk<'_>) {
     let is_off = cell.sensor.state == LinkState::Off;
     let is_practice = cell.is_practice;
     let mut command = None;
+    let mut wants_again = false;
     let right = |ui: &mut Ui| {
         if is_replay {
             ui.label(theme::dim(ui, words::RECORDED));
@@ -179,18 +184,13 @@ fn profiler(ui: &mut Ui, desk: &mut Desk<'_>) {
         if !is_off && !is_practice && small_button(ui, words::DISCONNECT, words::DISCONNECT_PROFILER).clicked() {
             command = Some(CellCommand::DisconnectSensor);
         }
-        let setup = cell.sensor.setup.as_ref().filter(|_| shape == model::Lamp::Bad && !is_practice);
-        if let Some(setup) = setup
-            && small_button(ui, words::RETRY, words::RETRY_PROFILER).clicked()
-        {
-            command = Some(CellCommand::ConnectSensor(setup.clone()));
-        }
         lamp(ui, shape, word, words::PROFILER);
     };
     card(ui, words::PROFILER, right, |ui| {
         inside(ui, |ui| {
             if let Some(remedy) = remedy.as_ref().filter(|_| !is_replay) {
                 remark(ui, "!", remedy, theme::palette(ui).bad);
+                wants_again = retries(ui, words::RETRY_PROFILER, shape, is_practice);
             }
             if is_off && !is_replay {
                 profiler_form(ui, desk);
@@ -217,6 +217,9 @@ fn profiler(ui: &mut Ui, desk: &mut Desk<'_>) {
             }
         });
     });
+    if wants_again {
+        command = cell.sensor.setup.clone().map(CellCommand::ConnectSensor);
+    }
     if let Some(command) = command {
         desk.ask(command);
     }

@@ -4,15 +4,15 @@ use crate::calibrate::{Mount, SolveError, Warning};
 use crate::diagnose::convention::{Inversion, RotationReading};
 use crate::diagnose::{Axis, Fault, PoseReading};
 use crate::geometry::Vec3;
-use crate::session::Session;
+use crate::session::{Session, Target};
 use crate::text::digits::{decimals_for, fixed};
 use crate::text::en::plural;
 use crate::text::{warning_message, warning_remedy};
 
 use super::readings::{pose_reading, pose_reading_in_full};
 use super::words::{
-    along, along_axis_of, axis_in_words, axis_name, capitalised, chance, exchanged_poses, size, station_label,
-    stations, target_frame, with_std,
+    along, along_axis_of, axis_in_words, axis_name, capitalised, chance, exchanged_poses, seen_word, size,
+    station_label, stations, target_frame, target_word, with_std,
 };
 
 /// A few words for lists.
@@ -147,7 +147,8 @@ pub fn fault_message(fault: &Fault, session: &Session) -> String {
         Fault::Drift { total_in_base_mm, std_mm } => {
             let length_mm = total_in_base_mm.norm();
             format!(
-                "The ball moved steadily during the recording: by {} mm from the first station to the last, {}.",
+                "The {} moved steadily during the recording: by {} mm from the first station to the last, {}.",
+                target_word(&session.target),
                 with_std(length_mm, *std_mm),
                 along_axis_of(*total_in_base_mm, target_frame(mount))
             )
@@ -162,15 +163,17 @@ pub fn fault_message(fault: &Fault, session: &Session) -> String {
             "The result is nearly the identity ({distance_mm:.1} mm, {angle_deg:.2}°): the poses are those of the sensor's own TOOL, not of the flange."
         ),
         Fault::WrongPose { station_idx, off_mm, typical_mm } => format!(
-            "The pose of station {} is wrong: its ball is {} mm from where the others have it, against {} mm typically.",
+            "The pose of station {} is wrong: its {} is {} mm from where the others have it, against {} mm typically.",
             label(station_idx),
+            seen_word(&session.target),
             size(*off_mm),
             size(*typical_mm)
         ),
         Fault::StalePose { station_idx, pose_of_idx, off_mm } => format!(
-            "Station {} still has the pose of station {}: its ball is {} mm from where the others have it.",
+            "Station {} still has the pose of station {}: its {} is {} mm from where the others have it.",
             label(station_idx),
             label(pose_of_idx),
+            seen_word(&session.target),
             size(*off_mm)
         ),
         Fault::MixedOrder { poses_from } => {
@@ -194,7 +197,12 @@ pub fn fault_message(fault: &Fault, session: &Session) -> String {
             chance(*p_value)
         ),
         Fault::DoesNotFit { scatter_mm } => format!(
-            "The stations contradict each other: the ball scatters by {} mm. No single cause that was tried explains it.",
+            "The stations contradict each other: the {} by {} mm. No single cause that was tried explains it.",
+            if matches!(session.target, Target::RightAnglePlate) {
+                "points are off their edges".to_owned()
+            } else {
+                format!("{} scatters", target_word(&session.target))
+            },
             size(*scatter_mm)
         ),
         Fault::NotSolved(error) => unsolved_message(error, mount),
@@ -228,10 +236,16 @@ fn unsolved_message(error: &SolveError, mount: Mount) -> String {
         SolveError::OtherTarget { .. } => "This method is for another target.".to_owned(),
         SolveError::TooFewEdgePoints { found_p, found_q, needed, refusal } => {
             let because = refusal.as_ref().map_or_else(String::new, |refusal| format!(" A profile: {refusal}."));
+            let alone = if (*found_p == 0) == (*found_q == 0) {
+                ""
+            } else {
+                " From one straight edge alone the plate's turn about it and its corner along it cannot be found, and no right angle bears on the sensor."
+            };
             format!(
-                "There are {found_p} points on edge p and {found_q} on edge q; {needed} on each are needed.{because}"
+                "There are {found_p} points on edge p and {found_q} on edge q; {needed} on each are needed.{alone}{because}"
             )
         }
+        SolveError::MixedMounts => "Some targets are seen from the flange, others from beside the robot.".to_owned(),
         SolveError::Diverged => "The solver found no finite answer.".to_owned(),
     }
 }
@@ -267,7 +281,12 @@ pub fn fault_remedy(fault: &Fault, session: &Session) -> String {
         Fault::StepDiffersFromPose { .. } => {
             "Use the bundle or the whole curve: both take the real poses. Check the step and its unit in the robot's program."
         }
-        Fault::Drift { .. } => "Fix the ball firmly, let the robot and the sensor warm up, and measure again.",
+        Fault::Drift { .. } => {
+            return format!(
+                "Fix the {} firmly, let the robot and the sensor warm up, and measure again.",
+                target_word(&session.target)
+            );
+        }
         Fault::ToolFrame { from_station_idx, .. } => {
             return format!(
                 "Take the TOOL out of the poses from station {} on, or measure these stations again without it.",
@@ -291,7 +310,10 @@ pub fn fault_remedy(fault: &Fault, session: &Session) -> String {
             "Look for bad profiles in Arcs, and at the stations with the largest error."
         }
         Fault::DoesNotFit { .. } => {
-            "Check that each profile stands with its own pose, that the ball did not move, and that the poses are the flange's."
+            return format!(
+                "Check that each profile stands with its own pose, that the {} did not move, and that the poses are the flange's.",
+                target_word(&session.target)
+            );
         }
         Fault::NotSolved(error) => unsolved_remedy(error),
         Fault::Method(warning) => warning_remedy(warning),
@@ -318,7 +340,10 @@ const fn unsolved_remedy(error: &SolveError) -> &'static str {
         SolveError::RotationsAboutOneAxis { .. } => {
             "Add stations that are tilted by 20° or more about an axis across this one."
         }
-        SolveError::Undetermined { .. } => "Add stations with other tilts, and with the ball elsewhere in the profile.",
+        SolveError::Undetermined { .. } => {
+            "Add stations with other tilts, and with the target elsewhere in the profile."
+        }
+        SolveError::MixedMounts => "Solve the targets of each sensor by themselves.",
         SolveError::Diverged => "Check poses and units.",
     }
 }

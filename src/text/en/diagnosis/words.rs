@@ -3,7 +3,7 @@
 use crate::calibrate::Mount;
 use crate::diagnose::Axis;
 use crate::geometry::Vec3;
-use crate::session::Session;
+use crate::session::{Session, Target};
 use crate::text::digits::{decimals_for, fixed};
 
 /// A direction of the frame that the sensor is mounted on, as an adverb: "along the flange's z".
@@ -115,4 +115,22 @@ pub(super) fn exchanged_poses(session: &Session, poses_from: &[(usize, usize)]) 
 pub(super) fn capitalised(words: &str) -> String {
     let mut letters = words.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// The target, as a word.
+pub(super) const fn target_word(target: &Target) -> &'static str {
+    match target {
+        Target::Ball { .. } => "ball",
+        Target::RightAnglePlate => "plate",
+        Target::Point => "tip",
+        Target::Workpiece | Target::Rgbd { .. } => "target",
+    }
+}
+
+/// What a station sees of it.
+pub(super) const fn seen_word(target: &Target) -> &'static str {
+    match target {
+        Target::RightAnglePlate => "point on the edge",
+        other => target_word(other),
+    }
 }

@@ -1,0 +1,89 @@
+//! What a method says about each station, as a table: of a ball, of a tip, of the points on a plate's edges.
+
+use std::fmt::Write as _;
+
+use crate::calibrate::{Method, PlateFound, Solution, StationSolution};
+use crate::geometry::Vec3;
+use crate::report::digits::{fixed, signed};
+
+/// The table. Writing to a string does not fail, hence the `ok()`s.
+pub fn stations(out: &mut String, solution: &Solution) {
+    match &solution.plate {
+        Some(plate) => points(out, plate),
+        None if solution.method == Method::FixedPoint => tips(out, &solution.stations),
+        None => balls(out, &solution.stations),
+    }
+}
+
+fn balls(out: &mut String, stations: &[StationSolution]) {
+    out.push_str(
+        "  station  side      ball in sensor / mm            ball in base / mm          error from first / mm    left out\n",
+    );
+    for station in stations {
+        writeln!(out, "  {:<8} {:>3} {}", station.label, station.side.symbol(), places(station)).ok();
+    }
+}
+
+fn tips(out: &mut String, stations: &[StationSolution]) {
+    out.push_str(
+        "  station       tip in sensor / mm             tip in base / mm           error from first / mm    left out\n",
+    );
+    for station in stations {
+        writeln!(out, "  {:<8} {}", station.label, places(station)).ok();
+    }
+}
+
+fn places(station: &StationSolution) -> String {
+    let error = station.error_from_first_mm;
+    format!(
+        "{}  {}  {:>7} {:>7} {:>7}  {:>8}",
+        place(station.target_in_sensor_mm),
+        place(station.target_in_base_mm),
+        signed(error.x, 3),
+        signed(error.y, 3),
+        signed(error.z, 3),
+        left_out(station.leave_one_out_mm),
+    )
+}
+
+fn points(out: &mut String, plate: &PlateFound) {
+    let corner = plate.base_from_plate.translation.vector;
+    let starts = plate.starts;
+    writeln!(
+        out,
+        "  corner of the plate in base: {}, {}, {} mm · {} of {} starts led here",
+        fixed(corner.x, 3),
+        fixed(corner.y, 3),
+        fixed(corner.z, 3),
+        starts.num_agreed,
+        starts.num_tried
+    )
+    .ok();
+    out.push_str(
+        "  station  edge     point in sensor / mm           point in base / mm         off the edge / mm        left out\n",
+    );
+    for point in &plate.points {
+        let off = point.off_edge_mm;
+        writeln!(
+            out,
+            "  {:<8} {:>3}  {}  {}  {:>7} {:>7} {:>7}  {:>8}",
+            point.label,
+            point.edge.symbol(),
+            place(point.point_in_sensor_mm),
+            place(point.point_in_base_mm),
+            signed(off.x, 3),
+            signed(off.y, 3),
+            signed(off.z, 3),
+            left_out(point.leave_one_out_mm),
+        )
+        .ok();
+    }
+}
+
+fn place(place: Vec3) -> String {
+    format!("{:>9} {:>9} {:>9}", fixed(place.x, 3), fixed(place.y, 3), fixed(place.z, 3))
+}
+
+fn left_out(error_mm: Option<f64>) -> String {
+    error_mm.map_or_else(|| "–".to_owned(), |error_mm| fixed(error_mm, 3))
+}
