@@ -2,7 +2,7 @@
 #![expect(clippy::expect_used, reason = "helpers of tests may fail as tests do")]
 #![expect(clippy::cast_precision_loss, reason = "a handful of points")]
 
-use handeye::calibrate::{Edge, Problem, best_available};
+use handeye::calibrate::{Edge, Method, Problem, best_available};
 use handeye::geometry::{Flange, Sensor, Transform, Vec3, so3};
 use handeye::session::{self, measure, samples};
 use handeye::verify::{
@@ -13,6 +13,7 @@ use handeye::watch::Unwatched;
 
 use paper_cell::PaperCell;
 
+mod command_line;
 mod paper_cell;
 
 /// f64 at half a metre, through a handful of products.
@@ -300,6 +301,35 @@ fn every_calibration_meets_every_target() {
     assert!(std_mm(2) < std_mm(0).min(std_mm(1)), "more data, less doubt");
     let reference = verification.reference_point_in_sensor_mm();
     assert!((reference.z - 172.0).abs() < 3.0, "{reference}");
+}
+
+/// Chen et al. 2023: line mean 0.117 mm, plane mean 0.128 mm, 3δ up to 0.421 mm an axis, with their calibration.
+#[test]
+fn the_papers_cell_gives_the_papers_order() {
+    let mut bundle_is_better = 0;
+    let seeds = 1..=10;
+    for seed in seeds.clone() {
+        let (cell, other) = (PaperCell::noisy(seed), PaperCell::noisy(seed + 1000));
+        let mut off_truth_mm = Vec::new();
+        for method in Method::PLATE {
+            let own = cell.plate_target();
+            let calibration = own.solve(method).expect("nine points an edge").flange_from_sensor;
+            for plate in [&own, &other.plate_target()] {
+                let evaluation = on(plate, &calibration);
+                let distances = evaluation.distances().expect("a plate");
+                assert!(distances.to_line.mean_mm <= 0.117, "{method:?}, seed {seed}: {:?}", distances.to_line);
+                assert!(distances.to_plane.mean_mm <= 0.128, "{method:?}, seed {seed}: {:?}", distances.to_plane);
+            }
+            let tip = evaluate(&other.tip_target(5), &calibration, Some(PaperCell::tip_in_base_mm())).expect("five");
+            let (_, stability) = tip.stability().expect("a tip");
+            assert!(stability.three_std_mm().max() <= 0.42, "{method:?}, seed {seed}: {}", stability.three_std_mm());
+            let truth = PaperCell::flange_from_sensor();
+            let difference = MatrixDifference::between(&truth, &calibration, Vec3::new(0.0, 0.0, 172.0));
+            off_truth_mm.push(difference.at_point_mm);
+        }
+        bundle_is_better += usize::from(off_truth_mm[1] < off_truth_mm[0]);
+    }
+    assert!(bundle_is_better * 2 > seeds.count(), "the bundle is nearer to the truth in {bundle_is_better} of 10");
 }
 
 #[test]
