@@ -4,7 +4,6 @@ use crate::calibrate::{MethodResult, Problem};
 use crate::session::model::UnknownFields;
 use crate::session::{FurtherTarget, Known, Measured, Session, Target, problem_of};
 use crate::text::verify::{own_target_name, target_name_from_file};
-use crate::verify::study::solved_calibrations;
 use crate::verify::{Calibration, TargetCase, Verification, verify};
 use crate::watch::{Cancelled, Watch};
 
@@ -59,9 +58,7 @@ pub fn verification(
     watch: &mut dyn Watch,
 ) -> Result<Verification, Cancelled> {
     let cases = target_cases(session, measured, own, watch)?;
-    let mut calibrations = solved_calibrations(&cases);
-    calibrations.extend(given.iter().cloned());
-    verify(cases, calibrations, watch)
+    verify(cases, given, watch)
 }
 
 /// A session's own target as a further one of another session. The name that it gets is free among those there once the edit

@@ -7,8 +7,8 @@ use crate::geometry::Vec3;
 use crate::session::Session;
 use crate::text::verify::{calibration_name, edge_letter};
 use crate::verify::{
-    Calibration, Distances, Evaluation, Figures, Histogram, MatrixCheck, Measurement, NotEvaluated, Origin, Seen,
-    Stability, TargetEvidence, Verification,
+    Calibration, Distances, Evaluation, Figures, Histogram, Joint, MatrixCheck, Measurement, NotEvaluated, Origin,
+    Seen, Stability, TargetEvidence, Verification,
 };
 
 use super::diagnosis_entry::vector;
@@ -19,13 +19,37 @@ pub const FORMAT: &str = "handeye-verification";
 /// Its version.
 pub const VERSION: u32 = 1;
 
+/// How the targets stand to the calibration from all of them.
+fn joint_entry(joint: &Joint, verification: &Verification) -> Value {
+    let name = |idx: &usize| verification.targets.get(*idx).map(|target| target.name.as_str());
+    match &joint.outcome {
+        Err(error) => json!({ "status": "failed", "reason": error.to_string() }),
+        Ok(solution) => json!({
+            "status": "ok",
+            "workspace_point_std_mm": solution.uncertainty.workspace_point_std_mm,
+            "targets": joint
+                .target_idxs
+                .iter()
+                .zip(&solution.targets)
+                .map(|(idx, target)| json!({
+                    "name": name(idx),
+                    "alone_workspace_point_std_mm":
+                        target.alone.uncertainty.as_ref().map(|known| known.workspace_point_std_mm),
+                    "moved_mm": target.moved_mm,
+                    "p_value": target.p_value,
+                }))
+                .collect::<Vec<_>>(),
+        }),
+    }
+}
+
 /// A matrix that was given, and what the check found.
 pub type Checked = (String, MatrixCheck);
 
 /// All evidence as a JSON document; `checked` are the given matrices.
 #[must_use]
 pub fn verification_file(session: &Session, verification: &Verification, checked: &[Checked]) -> Value {
-    json!({
+    let mut file = json!({
         "format": FORMAT,
         "version": VERSION,
         "session": session.name,
@@ -35,7 +59,9 @@ pub fn verification_file(session: &Session, verification: &Verification, checked
             .map(|calibration| calibration_entry(calibration, session.mount, verification, checked))
             .collect::<Vec<_>>(),
         "targets": verification.targets.iter().enumerate().map(|(idx, target)| target_entry(idx, target, verification)).collect::<Vec<_>>(),
-    })
+    });
+    file["joint"] = verification.joint.as_ref().map_or(Value::Null, |joint| joint_entry(joint, verification));
+    file
 }
 
 fn calibration_entry(

@@ -19,4 +19,4 @@ pub use figures::{Figures, Histogram};
 pub use matrix_check::{GivenMatrix, MatrixCheck, MatrixDifference, Suspect};
 pub use matrix_text::{MatrixRefusal, parse_matrix};
 pub use stability::{Measurement, Stability};
-pub use study::{Calibration, Origin, TargetCase, TargetEvidence, Verification, verify};
+pub use study::{Calibration, Joint, Origin, TargetCase, TargetEvidence, Verification, verify};

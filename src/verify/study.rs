@@ -1,6 +1,7 @@
 //! All calibrations at hand on all targets at hand.
 
-use crate::calibrate::{Method, MethodResult, Problem, best_available};
+use crate::calibrate::joint::{JointSolution, solve_joint};
+use crate::calibrate::{Method, MethodResult, Problem, SolveError, best_available};
 use crate::geometry::{Flange, Sensor, Transform, Vec3};
 use crate::watch::{Cancelled, Watch};
 
@@ -101,6 +102,17 @@ pub struct Verification {
     pub calibrations: Vec<Calibration>,
     /// One entry a target: the columns of the cross-target table.
     pub targets: Vec<TargetEvidence>,
+    /// The calibration from all targets that can be solved by themselves, where there are several.
+    pub joint: Option<Joint>,
+}
+
+/// The calibration from several targets at once.
+#[derive(Clone, Debug)]
+pub struct Joint {
+    /// The targets' places in the study.
+    pub target_idxs: Vec<usize>,
+    /// It, or why there is none.
+    pub outcome: Result<JointSolution, SolveError>,
 }
 
 impl Verification {
@@ -155,8 +167,7 @@ fn points_in_sensor(problem: &Problem) -> Vec<Vec3> {
 }
 
 /// The calibrations computed from the targets: of the first one every method's, of the others the best.
-#[must_use]
-pub fn solved_calibrations(targets: &[TargetCase]) -> Vec<Calibration> {
+fn solved_calibrations(targets: &[TargetCase]) -> Vec<Calibration> {
     let mut calibrations = Vec::new();
     for (target_idx, target) in targets.iter().enumerate() {
         let solutions = target.results.iter().filter_map(|result| result.outcome.as_ref().ok());
@@ -172,15 +183,45 @@ pub fn solved_calibrations(targets: &[TargetCase]) -> Vec<Calibration> {
     calibrations
 }
 
-/// Evaluates calibrations on every target.
+impl Joint {
+    /// Solves all targets together that have a solution of their own; `None` for fewer than two.
+    #[must_use]
+    pub fn of(targets: &[TargetCase]) -> Option<Self> {
+        let target_idxs: Vec<usize> =
+            (0..targets.len()).filter(|idx| best_available(&targets[*idx].results).is_some()).collect();
+        if target_idxs.len() < 2 {
+            return None;
+        }
+        let problems: Vec<Problem> = target_idxs.iter().map(|idx| targets[*idx].problem.clone()).collect();
+        Some(Self { target_idxs, outcome: solve_joint(&problems) })
+    }
+
+    /// It as a calibration to be judged.
+    #[must_use]
+    pub fn calibration(&self) -> Option<Calibration> {
+        let solution = self.outcome.as_ref().ok()?;
+        Some(Calibration {
+            origin: Origin::Joint { target_idxs: self.target_idxs.clone() },
+            flange_from_sensor: solution.flange_from_sensor,
+            workspace_point_std_mm: Some(solution.uncertainty.workspace_point_std_mm),
+        })
+    }
+}
+
+/// Evaluates the calibrations computed from the targets, that of all together, and those `given`, on every target.
 ///
 /// # Errors
 /// [`Cancelled`] if `watch` says so.
 pub fn verify(
     targets: Vec<TargetCase>,
-    calibrations: Vec<Calibration>,
+    given: &[Calibration],
     watch: &mut dyn Watch,
 ) -> Result<Verification, Cancelled> {
+    let mut calibrations = solved_calibrations(&targets);
+    watch.report(0, targets.len() * calibrations.len())?;
+    let joint = Joint::of(&targets);
+    calibrations.extend(joint.as_ref().and_then(Joint::calibration));
+    calibrations.extend(given.iter().cloned());
     let total = targets.len() * calibrations.len();
     let mut evidence = Vec::with_capacity(targets.len());
     for target in targets {
@@ -196,5 +237,5 @@ pub fn verify(
             rows,
         });
     }
-    Ok(Verification { calibrations, targets: evidence })
+    Ok(Verification { calibrations, targets: evidence, joint })
 }

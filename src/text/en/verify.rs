@@ -279,6 +279,25 @@ pub const CROSS_TABLE: &str = "Every calibration on every target";
 pub const CROSS_TABLE_HINT: &str = "ball and tip: scatter of its place; plate: distance to its lines; dim: own data";
 /// Where there is only the session's own target.
 pub const ONLY_OWN: &str = "Only the session's own target so far, which proves little: add the data of another one that the same sensor measured.";
+/// Title of the card.
+pub const JOINT: &str = "All targets together";
+/// Head of a column.
+pub const TARGET: &str = "target";
+/// Head of a column.
+pub const STD_ALONE: &str = "σ point, alone / mm";
+/// Head of a column.
+pub const STD_JOINT: &str = "σ point, together / mm";
+/// Head of a column.
+pub const MOVED: &str = "moved / mm";
+/// Head of a column.
+pub const P_VALUE: &str = "by chance";
+
+/// A target whose own calibration is too far from the joint one.
+#[must_use]
+pub fn contradicts(p_value: &str) -> String {
+    format!("! {p_value} contradicts")
+}
+
 /// Title of the list.
 pub const FURTHER: &str = "Further targets in this session";
 /// Button.

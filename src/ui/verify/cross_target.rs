@@ -19,6 +19,10 @@ use super::panel::{View, name_field};
 const NAME_WIDTH: f32 = 260.0;
 /// Height of the card with the stations' errors, points.
 const STATIONS_HEIGHT: f32 = 300.0;
+/// Parts of a row of the joint calibration: target, σ alone, σ together, movement, probability.
+const JOINT_PARTS: [f32; 5] = [0.28, 0.18, 0.18, 0.18, 0.18];
+/// Targets whose own calibrations are as far from the joint one as this less often by chance are said to contradict it.
+const CONTRADICTED_BELOW: f64 = 0.01;
 /// Part of a station's place that its bars take.
 const BARS_PART: f64 = 0.8;
 
@@ -60,6 +64,7 @@ pub(super) fn show(ui: &mut Ui, view: &View<'_>, context: &mut PanelContext<'_>,
     if targets.len() == 1 {
         ui.label(theme::dim(ui, words::ONLY_OWN));
     }
+    joint(ui, view);
     stations(ui, view, shown_idx, state);
     further_list(ui, context, state);
 }
@@ -114,6 +119,49 @@ fn table(ui: &mut Ui, view: &View<'_>, shown_idx: usize, state: &mut CrossTarget
             });
         }
     });
+}
+
+/// How well all targets together know the sensor, and whether they contradict each other.
+fn joint(ui: &mut Ui, view: &View<'_>) {
+    let Some(joint) = &view.verification.joint else { return };
+    widgets::card(
+        ui,
+        words::JOINT,
+        |_| {},
+        |ui| {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            let solution = match &joint.outcome {
+                Ok(solution) => solution,
+                Err(error) => {
+                    let words = error.to_string();
+                    Frame::new().inner_margin(Margin::same(16)).show(ui, |ui| ui.add(egui::Label::new(words).wrap()));
+                    return;
+                }
+            };
+            let widths = JOINT_PARTS.map(|part| part * ui.available_width());
+            let mut head = RowCells::new(ui, theme::ROW_HEIGHT);
+            let heads = [words::TARGET, words::STD_ALONE, words::STD_JOINT, words::MOVED, words::P_VALUE];
+            for (idx, (width, name)) in widths.iter().zip(heads).enumerate() {
+                head.head(*width, name, if idx == 0 { Align2::LEFT_CENTER } else { Align2::RIGHT_CENTER });
+            }
+            for (target_idx, target) in joint.target_idxs.iter().zip(&solution.targets) {
+                let mut cells = RowCells::new(ui, theme::ROW_HEIGHT);
+                cells.text(widths[0], view.verification.targets.get(*target_idx).map_or("", |target| &target.name));
+                let alone = target.alone.uncertainty.as_ref().map_or(f64::NAN, |known| known.workspace_point_std_mm);
+                let together = solution.uncertainty.workspace_point_std_mm;
+                for (value, width) in [alone, together, target.moved_mm].into_iter().zip(&widths[1..]) {
+                    cells.number(*width, value, &widgets::fixed(value, 3), egui::Color32::TRANSPARENT);
+                }
+                let palette = theme::palette(cells.ui());
+                let (words, color) = if target.p_value < CONTRADICTED_BELOW {
+                    (words::contradicts(&widgets::fixed(target.p_value, 4)), palette.warn)
+                } else {
+                    (widgets::fixed(target.p_value, 2), palette.text)
+                };
+                cells.word(widths[4], &words, color);
+            }
+        },
+    );
 }
 
 /// A target's head; a click shows its stations.
