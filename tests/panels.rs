@@ -16,7 +16,7 @@ use handeye::diagnose::{
 use handeye::geometry::{Profile, Transform, Vec3};
 use handeye::plan::{Plan, PlanRefusal, PlannedStation};
 use handeye::scene::PartKind;
-use handeye::session::{self, Reading, Session, samples};
+use handeye::session::{self, Reading, Session, Target, samples};
 use handeye::simulate::{SimulationOptions, SimulationTarget, simulate};
 use handeye::text::{
     arcs as arcs_words, compare as compare_words, diagnosis as fault_words, diagnosis_panel as panel_words,
@@ -275,7 +275,12 @@ fn every_sample_has_its_arcs_or_says_what_to_do() {
         let has_sweep = session.stations[0].captures.len() > 1;
         for width in [560.0, 1000.0] {
             let harness = Bench::with(Shown::Arcs, session.clone()).harness_of_size([width, 1200.0]);
-            assert_eq!(harness.query_by_label(arcs_words::POINT_READING).is_some(), is_reduced, "{}", sample.file_name);
+            assert_eq!(
+                harness.query_by_label(arcs_words::point_reading(&Target::ball(30.0))).is_some(),
+                is_reduced,
+                "{}",
+                sample.file_name
+            );
             assert_eq!(harness.query_by_label(arcs_words::NO_SWEEP).is_some(), !has_sweep, "{}", sample.file_name);
         }
     }
