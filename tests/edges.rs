@@ -1,6 +1,11 @@
 //! Edges, corners, steps and tips in simulated profiles whose edge is known.
 #![expect(clippy::expect_used, reason = "a test that finds nothing to check must fail")]
-#![expect(clippy::cast_precision_loss, reason = "small counts")]
+#![expect(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "small counts, none below zero"
+)]
 
 use handeye::fit::{EdgeOptions, EdgeRefusal, Feature, PointClass, extract_edge};
 use handeye::geometry::Profile;
@@ -188,10 +193,13 @@ fn a_plate_on_a_table_ends_at_the_step_on_its_own_side() {
     }
 }
 
+/// How far below its top a tip is, at a distance from the top across the line.
+type Shape = fn(f64) -> Option<f64>;
+
 #[test]
 fn a_tip_is_found_within_what_is_said_of_it() {
     // A cone with its tip up, a pin with a round top, and a flat pin of a few points; in air and above a table.
-    let shapes: [(&str, fn(f64) -> Option<f64>); 3] = [
+    let shapes: [(&str, Shape); 3] = [
         ("cone", |u| (u.abs() < 2.0).then_some(2.5 * u.abs())),
         ("round", |u| (u.abs() < 1.2).then(|| 1.5 - (1.5_f64 * 1.5 - u * u).sqrt())),
         ("flat", |u| (u.abs() < 0.4).then_some(0.0)),
