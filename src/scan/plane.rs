@@ -14,6 +14,8 @@ const NUM_STARTS: usize = 60;
 const TRIM_AT_STD: f64 = 3.5;
 /// Passes of trimming; they mostly settle after three.
 const MAX_PASSES: usize = 10;
+/// Where trimming comes and goes with so small a part of the points, it has settled.
+const SETTLED: f64 = 1e-4;
 /// A plane narrower than this part of its length may as well be a line.
 const MIN_WIDTH: f64 = 1e-3;
 /// Fewer profiles do not tell how they scatter among each other.
@@ -112,7 +114,7 @@ pub fn fit_plane(cloud: &Cloud, set: &PointSet) -> Result<PlaneFit, ScanError> {
     for _ in 0..MAX_PASSES {
         limit_mm = TRIM_AT_STD * scale_mm(&fit.plane, &sample);
         let refined = Moments::of(cloud, set, Some((&fit.plane, limit_mm))).fit()?;
-        let has_settled = refined.count.total_cmp(&fit.count).is_eq();
+        let has_settled = (refined.count - fit.count).abs() <= SETTLED * fit.count;
         fit = refined;
         if has_settled {
             break;

@@ -123,6 +123,7 @@ pub fn measure_teeth(cloud: &Cloud, set: &PointSet) -> Result<Teeth, ScanError> 
     let mut frame = Axes::start(&sample, toward_sensor)?;
     let points: Vec<(Vec3, u32)> =
         set.thinned(NUM_FITTED).into_iter().map(|idx| (cloud.offset_mm(idx), cloud.profile_idx()[idx])).collect();
+    let points = frame.on_part(points);
     let mut found = Curve::of(&points, &frame).features();
     for _ in 0..NUM_PASSES {
         if found.tips.len() < 2 {
@@ -169,6 +170,52 @@ impl Axes {
         let up = ridge.cross(&along);
         let up = if up.dot(&toward_sensor) < 0.0 { -up } else { up };
         Ok(Self { along: up.cross(&ridge), up, ridge })
+    }
+
+    /// The points of those strips across the ridges that reach up to the crests: beside the part there is only ground.
+    fn on_part(&self, points: Vec<(Vec3, u32)>) -> Vec<(Vec3, u32)> {
+        const NUM_STRIPS: usize = 50;
+        const END_STRIPS: usize = 2;
+        let ends = |values: &mut dyn Iterator<Item = f64>| {
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
+        };
+        let [first, last] = ends(&mut points.iter().map(|(point, _)| self.ridge.dot(point)));
+        #[expect(
+            clippy::cast_precision_loss,
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "one of a few strips"
+        )]
+        let strip_of = |point: &Vec3| {
+            let part = (self.ridge.dot(point) - first) / (last - first).max(f64::MIN_POSITIVE);
+            ((part * NUM_STRIPS as f64) as usize).min(NUM_STRIPS - 1)
+        };
+        let mut strips: Vec<Vec<f64>> = vec![Vec::new(); NUM_STRIPS];
+        for (point, _) in &points {
+            strips[strip_of(point)].push(self.up.dot(point));
+        }
+        // Nine tenths up, so that a few wild points make no part; crests take more than that of the room.
+        let tops: Vec<f64> = strips
+            .iter_mut()
+            .map(|heights| {
+                let place = heights.len() * 9 / 10;
+                if heights.is_empty() {
+                    f64::NEG_INFINITY
+                } else {
+                    *heights.select_nth_unstable_by(place, f64::total_cmp).1
+                }
+            })
+            .collect();
+        let highest = tops.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let [lowest, _] = ends(&mut points.iter().map(|(point, _)| self.up.dot(point)));
+        let is_high: Vec<bool> = tops.iter().map(|top| *top > lowest + 0.75 * (highest - lowest)).collect();
+        // Strips at the part's ends hold some of the ground as well.
+        let is_part = |strip: usize| {
+            is_high[strip.saturating_sub(END_STRIPS)..(strip + END_STRIPS + 1).min(NUM_STRIPS)]
+                .iter()
+                .all(|is_high| *is_high)
+        };
+        points.into_iter().filter(|(point, _)| is_part(strip_of(point))).collect()
     }
 
     /// Turns the axes so that crests and roots lie level and flanks run along the ridges; by how much, rad.
@@ -291,15 +338,9 @@ impl Curve {
 
     fn features(&self) -> Features {
         let outline = self.outline();
-        let mut heights: Vec<f64> = outline.iter().map(|[_, height]| *height).collect();
-        heights.sort_by(f64::total_cmp);
-        if outline.len() < NUM_BINS / 10 {
+        let Some((middle, range)) = levels(&outline) else {
             return Features { flanks: Vec::new(), tips: Vec::new() };
-        }
-        // A spike or two beside the part are no teeth.
-        let end = heights.len() / 50;
-        let (low, high) = (heights[end], heights[heights.len() - 1 - end]);
-        let (middle, range) = (f64::midpoint(low, high), high - low);
+        };
         let crossings = crossings(&outline, middle, range);
         let flanks: Vec<Flank> = crossings
             .iter()
@@ -436,6 +477,32 @@ fn apex(before: &Flank, after: &Flank) -> Option<Apex> {
     };
     let std_mm = (variance(first) + variance(second)).max(0.0).sqrt();
     Some(Apex { place: before.at(level), level: Measured { value_mm: level, std_mm } })
+}
+
+/// The height between crests and roots that the outline passes most often, and how far apart these are. The ground beside
+/// the part is lower than its roots, but is passed only at its ends.
+fn levels(outline: &[[f64; 2]]) -> Option<(f64, f64)> {
+    const NUM_LEVELS: u8 = 60;
+    /// Part of the whole height that noise does not pass.
+    const ABOVE_NOISE: f64 = 0.02;
+    if outline.len() < NUM_BINS / 10 {
+        return None;
+    }
+    let mut heights: Vec<f64> = outline.iter().map(|[_, height]| *height).collect();
+    heights.sort_by(f64::total_cmp);
+    // A spike or two beside the part are no teeth.
+    let end = heights.len() / 50;
+    let (low, high) = (heights[end], heights[heights.len() - 1 - end]);
+    let level = |number: u8| low + (high - low) * (f64::from(number) + 0.5) / f64::from(NUM_LEVELS);
+    let noise = ABOVE_NOISE * (high - low);
+    let passed: Vec<usize> =
+        (0..NUM_LEVELS).map(|number| crossings(outline, level(number), noise / HYSTERESIS).len()).collect();
+    let most = passed.iter().copied().max()?;
+    let is_between = |(_, passed): &(u8, &usize)| **passed == most;
+    let first = (0..).zip(&passed).find(is_between)?.0;
+    let last = (0..).zip(&passed).filter(is_between).last()?.0;
+    let margin = (high - low) / f64::from(NUM_LEVELS);
+    Some((f64::midpoint(level(first), level(last)), level(last) - level(first) + margin + 2.0 * noise))
 }
 
 struct Crossing {

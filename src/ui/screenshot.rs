@@ -73,15 +73,21 @@ pub fn render(
     let mut renderer = SoftwareRenderer::default();
     let mut frames = Frames { ctx, size, renderer: &mut renderer };
     // Also without news it looks again after a while: a wake-up may have come before the callback was set.
-    while shell.is_busy() {
-        frames.draw(&mut shell);
-        woken.recv_timeout(std::time::Duration::from_millis(20)).ok();
-    }
+    let wait = |frames: &mut Frames<'_>, shell: &mut Shell| {
+        while shell.is_busy() {
+            frames.draw(shell);
+            woken.recv_timeout(std::time::Duration::from_millis(20)).ok();
+        }
+    };
+    wait(&mut frames, &mut shell);
     let failed = shell.workbench().notices().iter().find(|notice| notice.kind == NoticeKind::Error);
     if let Some(notice) = failed {
         return Err(ScreenshotError::Session(notice.message.clone()));
     }
     shell.go_to(step);
+    // A step may begin work of its own when it is first seen.
+    frames.draw(&mut shell);
+    wait(&mut frames, &mut shell);
     for _ in 1..NUM_SETTLING_FRAMES {
         frames.draw(&mut shell);
     }

@@ -1,6 +1,7 @@
 //! Planes, teeth, balls and cylinders of scanned parts whose sizes are known, and files of points.
 #![expect(clippy::expect_used, reason = "a test that finds nothing to check must fail")]
 
+mod files;
 mod parts;
 
 use handeye::geometry::{Vec3, stats};
