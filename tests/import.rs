@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use handeye::geometry::{PoseNotation, Transform};
 use handeye::session::import::{ImportError, ImportOptions, Imported, Kind, Note, Source, read, read_paths};
-use handeye::session::{Reading, Session, Target, load};
+use handeye::session::{Edge, Reading, Session, Target, load};
 use handeye::watch::Unwatched;
 
 fn data(name: &str) -> PathBuf {
@@ -424,7 +424,7 @@ fn a_folder_is_matched_by_the_numbers_in_the_names() {
 fn what_is_exported_is_imported_the_same() {
     use handeye::session::export::{TableStyle, poses_csv, write_profiles, write_text};
     use handeye::session::import::Separator;
-    for name in ["clean-sweeps.json", "lin-mu-2019-table-1.json", "dirty-profiles.json"] {
+    for name in ["clean-sweeps.json", "lin-mu-2019-table-1.json", "dirty-profiles.json", "plate.json"] {
         for style in [TableStyle::default(), TableStyle { separator: Separator::Semicolon, has_decimal_comma: true }] {
             let mut session = sample(name);
             session.stations[0].label = "#1 \"left\", 1".to_owned();
@@ -439,8 +439,8 @@ fn what_is_exported_is_imported_the_same() {
             assert!(imported.problems.is_empty(), "{name}: {:?}", imported.problems);
             for (found, expected) in imported.stations.iter().zip(&session.stations) {
                 assert_eq!(
-                    (&found.label, found.enabled, found.side),
-                    (&expected.label, expected.enabled, expected.side)
+                    (&found.label, found.enabled, found.side, found.edge),
+                    (&expected.label, expected.enabled, expected.side, expected.edge)
                 );
                 for (found, expected) in found.captures.iter().zip(&expected.captures) {
                     let apart = found.base_from_flange.rotation().angle_to(&expected.base_from_flange.rotation());
@@ -453,6 +453,19 @@ fn what_is_exported_is_imported_the_same() {
             assert_eq!(imported.stations.len(), session.stations.len());
         }
     }
+}
+
+#[test]
+fn the_edges_of_a_plate_are_read_from_their_column() {
+    let table = "label,edge,x,y,z,w,p,r,px,py,pz\na,p,1,2,3,10,20,30,1,0,80\nb,Q,4,5,6,40,50,60,2,0,81\nc,-,7,8,9,15,25,35,3,0,82\n";
+    let imported = import_text(table);
+    let edges: Vec<Option<Edge>> = imported.stations.iter().map(|station| station.edge).collect();
+    assert_eq!(edges, [Some(Edge::P), Some(Edge::Q), None]);
+    let plate = imported.into_session("plate".to_owned(), Target::RightAnglePlate).expect("a session");
+    let enabled: Vec<bool> = plate.stations.iter().map(|station| station.enabled).collect();
+    assert_eq!(enabled, [true, true, false], "of the last nobody knows what it saw");
+    let wrong = import_text(&table.replace("b,Q", "b,r"));
+    assert_eq!(wrong.problems[0].expected, "an edge of the plate: p or q");
 }
 
 #[test]
@@ -565,6 +578,15 @@ mod command {
         check(&["import", "no-such.csv", "--out", "x.json"], 2, &["no-such.csv"]);
         check(&["import", "LICENSE-MIT", "--out", "x.json"], 2, &["LICENSE-MIT: found"]);
         check(&["import", "a", "--out", "b", "--columns", "x,y,what"], 2, &["found what"]);
+    }
+
+    #[test]
+    fn a_plate_without_edges_says_what_is_missing() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (poses, out) = (text(&folder.path().join("poses.csv")), text(&folder.path().join("plate.json")));
+        std::fs::write(&poses, "x,y,z,w,p,r,px,py,pz\n1,2,3,10,20,30,1,0,80\n").expect("written");
+        let missing = "edge: found 1 station without one, which take no part until it is set; add a column edge";
+        check(&["import", &poses, "--out", &out, "--target", "plate"], 0, &[missing]);
     }
 
     #[test]

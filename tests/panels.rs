@@ -15,7 +15,9 @@ use handeye::diagnose::{
 };
 use handeye::geometry::{Profile, Transform, Vec3};
 use handeye::plan::{Plan, PlanRefusal, PlannedStation};
-use handeye::session::{self, Reading, Session, samples};
+use handeye::scene::PartKind;
+use handeye::session::{self, Reading, Session, Target, samples};
+use handeye::simulate::{SimulationOptions, SimulationTarget, simulate};
 use handeye::text::{
     arcs as arcs_words, compare as compare_words, diagnosis as fault_words, diagnosis_panel as panel_words,
     method_name, method_short_name,
@@ -132,6 +134,14 @@ fn sample(file_name: &str) -> Session {
     session::parse(sample.json.as_bytes(), sample.file_name).expect("the sample is a session")
 }
 
+/// The samples that these panels are about, by their names.
+fn ball_samples() -> impl Iterator<Item = (&'static str, Session)> {
+    samples::ALL
+        .iter()
+        .map(|sample| (sample.file_name, self::sample(sample.file_name)))
+        .filter(|(_, session)| matches!(session.target, Target::Ball { .. }))
+}
+
 fn selected(harness: &Harness<'static, Bench>) -> (usize, usize) {
     let selection = &harness.state().selection;
     (selection.station_idx, selection.capture_idx)
@@ -189,8 +199,7 @@ fn the_toggles_choose_the_cards() {
 
 #[test]
 fn every_view_of_the_comparison_draws_every_sample() {
-    for sample in samples::ALL {
-        let session = session::parse(sample.json.as_bytes(), sample.file_name).expect("the sample is a session");
+    for (file_name, session) in ball_samples() {
         for width in [560.0, 1000.0, 1600.0] {
             let mut harness = Bench::with(Shown::Compare, session.clone()).harness_of_size([width, 800.0]);
             for toggle in [
@@ -205,7 +214,7 @@ fn every_view_of_the_comparison_draws_every_sample() {
                 }
                 harness.run_steps(2);
             }
-            assert!(harness.state().commands.is_empty(), "{}", sample.file_name);
+            assert!(harness.state().commands.is_empty(), "{file_name}");
         }
     }
 }
@@ -267,14 +276,13 @@ fn a_refused_profile_says_why_in_the_errors_own_words() {
 
 #[test]
 fn every_sample_has_its_arcs_or_says_what_to_do() {
-    for sample in samples::ALL {
-        let session = session::parse(sample.json.as_bytes(), sample.file_name).expect("the sample is a session");
+    for (file_name, session) in ball_samples() {
         let is_reduced = matches!(session.stations[0].captures[0].reading, Reading::Point(_));
         let has_sweep = session.stations[0].captures.len() > 1;
         for width in [560.0, 1000.0] {
             let harness = Bench::with(Shown::Arcs, session.clone()).harness_of_size([width, 1200.0]);
-            assert_eq!(harness.query_by_label(arcs_words::POINT_READING).is_some(), is_reduced, "{}", sample.file_name);
-            assert_eq!(harness.query_by_label(arcs_words::NO_SWEEP).is_some(), !has_sweep, "{}", sample.file_name);
+            assert_eq!(harness.query_by_label(arcs_words::point_reading(&session.target)).is_some(), is_reduced, "{file_name}");
+            assert_eq!(harness.query_by_label(arcs_words::NO_SWEEP).is_some(), !has_sweep, "{file_name}");
         }
     }
 }
@@ -311,6 +319,45 @@ fn without_a_stated_distance_the_verdict_says_where_its_point_is() {
     assert!(session.sensor.reference_distance_mm.is_none());
     let harness = Bench::with(Shown::Compare, session).harness();
     harness.get_by_label_contains("a point amid the balls seen, z = ");
+}
+
+/// A simulated session of a plate or pin.
+fn simulated(kind: PartKind) -> Session {
+    simulate(&SimulationOptions { num_points: 240, ..SimulationOptions::of(SimulationTarget::Part(kind)) })
+}
+
+#[test]
+fn sessions_of_plates_and_tips_say_nothing_of_balls() {
+    for kind in [PartKind::Plate, PartKind::Pin] {
+        for shown in [Shown::Arcs, Shown::Compare] {
+            let harness = Bench::with(shown, simulated(kind)).harness();
+            for word in ["ball", "Ball", "section", "sweep"] {
+                assert_eq!(harness.query_all_by_label_contains(word).count(), 0, "{kind:?}: {word}");
+            }
+        }
+    }
+}
+
+#[test]
+fn arcs_shows_where_a_plates_edge_is_and_all_points_beside_it() {
+    let mut harness = Bench::with(Shown::Arcs, simulated(PartKind::Plate)).harness();
+    harness.get_by_label(arcs_words::IN_LASER_PLANE);
+    harness.get_by_label_contains(" at x ");
+    harness.get_by_label(&arcs_words::station_name("q4")).click();
+    harness.run();
+    assert_eq!(harness.state().selection.station_idx, 12);
+    harness.get_by_label(&arcs_words::profile_title("q4", 1));
+}
+
+#[test]
+fn compare_sets_the_plates_methods_against_each_other() {
+    let harness = Bench::with(Shown::Compare, simulated(PartKind::Plate)).harness();
+    harness.get_by_label(&compare_words::maximum_error(Method::PlateBundle));
+    for method in Method::PLATE {
+        harness.get_by_label(&compare_words::select_method(method_name(method)));
+    }
+    // Distances from the edges are relative to no station.
+    assert_eq!(harness.query_all_by_label(compare_words::FROM_FIRST).count(), 0);
 }
 
 /// The window's own software renderer, so that pictures need no graphics driver and are the same on every machine.
@@ -597,13 +644,12 @@ fn the_limits_of_the_plan_are_edited_in_place() {
 
 #[test]
 fn every_sample_can_be_diagnosed_at_every_width() {
-    for sample in samples::ALL {
-        let session = session::parse(sample.json.as_bytes(), sample.file_name).expect("the sample is a session");
+    for (file_name, session) in ball_samples() {
         for width in [532.0, 948.0, 1600.0] {
             let harness = Bench::with(Shown::Diagnosis, session.clone()).harness_of_size([width, 792.0]);
             harness.get_by_label(panel_words::FINDINGS);
             harness.get_by_label(panel_words::NEXT_POSES);
-            assert!(harness.state().commands.is_empty(), "{}", sample.file_name);
+            assert!(harness.state().commands.is_empty(), "{file_name}");
         }
     }
 }

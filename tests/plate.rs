@@ -199,8 +199,9 @@ fn too_little_is_never_good() {
 /// Nothing that only a ball has is said of a tip.
 #[test]
 fn a_tip_is_no_ball() {
-    for seed in 1..=10 {
-        let (tip, _) = simulated_tip(&noisy(), seed);
+    let mut squares = [0.0; 2];
+    for seed in 1..=200 {
+        let (tip, truth) = simulated_tip(&noisy(), seed);
         let solution = Problem::Point(tip).solve(Method::FixedPoint).expect("a solution");
         for warning in &solution.warnings {
             let words = handeye::text::warning_message(warning) + handeye::text::warning_remedy(warning);
@@ -208,7 +209,12 @@ fn a_tip_is_no_ball() {
         }
         assert!(solution.stations.iter().all(|station| station.side_cost_ratio.is_none() && station.sweep.is_none()));
         assert_eq!(solution.radius, None);
+        let known = solution.uncertainty.as_ref().expect("something is left over");
+        squares[0] += point_error_mm(&solution, &truth).powi(2);
+        squares[1] += known.workspace_point_std_mm.powi(2);
     }
+    let ratio = (squares[0] / squares[1]).sqrt();
+    assert!((0.9..1.1).contains(&ratio), "error over σ: {ratio}");
 }
 
 fn session_of(target: Target, stations: impl Iterator<Item = (Option<Edge>, handeye::calibrate::Station)>) -> Session {

@@ -16,6 +16,7 @@ use handeye::device::{
 };
 use handeye::fit::{ArcFit, ArcOptions, extract_arc};
 use handeye::geometry::{Base, Flange, Rigid, Transform, Vec3, so3};
+use handeye::scene::PartKind;
 
 /// Far more than anything here takes: only a server that does not answer is told by it.
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -423,6 +424,53 @@ fn each_robot_and_profiler_moves_sees_and_stops_by_its_driver() {
         assert!((pose_of(robot.as_mut()).translation.vector - stopped.translation.vector).norm() < 1e-9);
         assert!((stopped.translation.vector - start.translation.vector).norm() < 59.0, "{robot_kind:?}");
     }
+}
+
+#[test]
+fn parts_are_seen_where_they_stand() {
+    for kind in [PartKind::Plate, PartKind::Pin, PartKind::Square, PartKind::Teeth] {
+        let cell = SimCell::start(&SimOptions { part: Some(kind), is_noisy: false, ..quick() }).expect("free ports");
+        let (mut robot, mut sensor) = drivers(&cell);
+        let base_from_part = cell.truth.base_from_part.expect("there is a part");
+        let mounting = cell.truth.flange_from_sensor;
+        let home = pose_of(robot.as_mut());
+        for away_mm in [0.0, 12.0] {
+            // Straight back in the sensor, so that the line stays where it is on the part.
+            let away = mounting * Rigid::translation(0.0, 0.0, -away_mm) * mounting.inverse();
+            go(robot.as_mut(), &(home * away)).expect("reachable");
+            let base_from_sensor = pose_of(robot.as_mut()) * mounting;
+            let part_from_sensor = base_from_part.inverse() * base_from_sensor;
+            let reading = fresh_profile(sensor.as_mut());
+            let heights: Vec<f64> = reading
+                .profile
+                .valid_points()
+                .map(|(_, x, z)| (part_from_sensor * nalgebra::Point3::new(x, 0.0, z)).z)
+                .collect();
+            let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            // A pin's point lies between two points of the grid, and the line passes it by the rounding of the pose.
+            let grid_mm = if kind == PartKind::Pin { 0.2 } else { 0.05 };
+            assert!(heights.len() > 100 && highest.abs() < grid_mm, "{kind:?}: {} points to {highest}", heights.len());
+            if kind == PartKind::Plate {
+                let is_at = |height: f64, z_mm: f64| (height - z_mm).abs() < 2.0 * WIRE_ERROR_MM;
+                let [top, table] = [0.0, -10.0].map(|z_mm| heights.iter().filter(|z| is_at(**z, z_mm)).count());
+                assert!(top > 100 && table > 100, "{top} points of the plate and {table} of the table");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_part_is_pushed_like_a_ball() {
+    let cell =
+        SimCell::start(&SimOptions { part: Some(PartKind::Pin), is_noisy: false, ..quick() }).expect("free ports");
+    let (_robot, mut sensor) = drivers(&cell);
+    let nearest = |sensor: &mut dyn SensorDriver| {
+        let profile = fresh_profile(sensor).profile;
+        profile.valid_points().map(|(_, _, z)| z).fold(f64::INFINITY, f64::min)
+    };
+    let before = nearest(sensor.as_mut());
+    cell.inject(FaultSpec::now(Fault::BallMoved));
+    assert!(nearest(sensor.as_mut()) > before + 0.5, "the line passes the point by");
 }
 
 #[test]

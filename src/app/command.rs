@@ -10,6 +10,7 @@ use crate::session::{Edit, Target};
 use crate::verify::Calibration;
 
 use super::cell::CellCommand;
+use super::workbench::scans::ScanCommand;
 
 impl Command {
     /// Reads what a user has pointed at: a session is opened, anything else goes to the import's preview.
@@ -144,6 +145,8 @@ pub enum Command {
     GiveCalibration(Box<Calibration>),
     /// Forgets it, by its name.
     WithdrawCalibration(String),
+    /// Something for scanned parts.
+    Scan(Box<ScanCommand>),
     /// Something for the live cell.
     Cell(Box<CellCommand>),
     /// Removes a notice.

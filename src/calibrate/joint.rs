@@ -13,7 +13,7 @@ use super::observation::{NUM_UNKNOWNS, State};
 use super::plate::PlateState;
 use super::plate::descent::inverse_of;
 use super::plate::points::{NUM_UNKNOWNS as NUM_PLATE_UNKNOWNS, sums_of, tangent_size};
-use super::uncertainty::{doubt_in_the_noise, of_sensor};
+use super::uncertainty::{doubt_in_the_noise, of_sensor, point_by_sensor};
 use super::{Mount, PlateReduced, Problem, Reduced, RmsMax, Solution, SolveError, Uncertainty, best_available};
 
 /// From minima near each other a few steps settle it.
@@ -121,7 +121,7 @@ impl<'a> Block<'a> {
                 let sums = reduced.sums_with(&state, |_| true);
                 let (reach, follows) =
                     eliminated::<NUM_UNKNOWNS, 3>(&(sums.hessian / *factor), &(sums.gradient / *factor))?;
-                Ok((softened(reach, by_radius), follows))
+                Ok((softened(&reach, by_radius), follows))
             }
             Self::Plate { reduced, base_from_plate } => {
                 let state = PlateState { flange_from_sensor: *flange_from_sensor, base_from_plate: *base_from_plate };
@@ -170,7 +170,7 @@ impl<'a> Block<'a> {
 
 /// With a ball's radius known no better than by one standard deviation, which moves the sensor by `by_radius`: its
 /// information is that of (H⁻¹ + d dᵀ)⁻¹.
-fn softened(reach: Reach, by_radius: &Vector6<f64>) -> Reach {
+fn softened(reach: &Reach, by_radius: &Vector6<f64>) -> Reach {
     let pulled = reach.information * by_radius;
     let damp = 1.0 / (1.0 + by_radius.dot(&pulled));
     Reach {
@@ -230,20 +230,26 @@ pub fn solve_joint(problems: &[Problem]) -> Result<JointSolution, SolveError> {
         reference_point,
     );
     let joint = Transform::from_rigid(flange_from_sensor);
+    let by_sensor = point_by_sensor(reference_point);
     let targets = alone
         .iter()
         .zip(&blocks)
         .zip(&reaches)
-        .map(|((alone, block), reach)| JointTarget {
-            target_in_base_mm: block.target_in_base(),
-            base_from_plate: match block {
-                Block::Plate { base_from_plate, .. } => Some(*base_from_plate),
-                Block::Point { .. } => None,
-            },
-            scatter: block.scatter(&flange_from_sensor),
-            moved_mm: (joint.map_point(reference_point) - alone.flange_from_sensor.map_point(reference_point)).norm(),
-            p_value: agreement(alone, &flange_from_sensor, reach, &covariance),
-            alone: alone.clone(),
+        .map(|((alone, block), reach)| {
+            let shift = alone.flange_from_sensor.map_point(reference_point) - joint.map_point(reference_point);
+            let in_sensor = flange_from_sensor.rotation.inverse() * shift;
+            JointTarget {
+                target_in_base_mm: block.target_in_base(),
+                base_from_plate: match block {
+                    Block::Plate { base_from_plate, .. } => Some(*base_from_plate),
+                    Block::Point { .. } => None,
+                },
+                scatter: block.scatter(&flange_from_sensor),
+                moved_mm: shift.norm(),
+                p_value: inverse_of(&reach.information)
+                    .map_or(1.0, |own| agreement(&in_sensor, &by_sensor, alone, &(own - covariance))),
+                alone: alone.clone(),
+            }
         })
         .collect();
     let converged = size < CONVERGED;
@@ -281,16 +287,22 @@ fn degrees_of_freedom(covariance: &Matrix6<f64>, reaches: &[Reach], alone: &[Sol
     if doubt > 0.0 { doubt.recip() } else { f64::INFINITY }
 }
 
+/// Probability of so large a shift of the workspace point between a target's own calibration and the joint one by chance.
+///
 /// The covariance of the difference between a part and the whole is the difference of their covariances.
-fn agreement(alone: &Solution, joint: &Rigid, reach: &Reach, covariance: &Matrix6<f64>) -> f64 {
-    let difference = se3::log(&(joint.inverse() * alone.flange_from_sensor.rigid()));
-    let Ok(own) = inverse_of(&reach.information) else { return 1.0 };
-    let eigen = (own - covariance).symmetric_eigen();
-    // Where the other targets add nothing, nothing can differ.
-    let least = 1e-9 * eigen.eigenvalues.max();
-    let seen = || (0..6).filter(|idx| eigen.eigenvalues[*idx] > least);
+fn agreement(
+    shift_in_sensor: &Vec3,
+    by_sensor: &SMatrix<f64, 3, 6>,
+    alone: &Solution,
+    difference: &Matrix6<f64>,
+) -> f64 {
+    /// Directions in which the other targets add less than this part of the variance say nothing of agreement.
+    const LEAST_PART: f64 = 1e-2;
+    let eigen = (by_sensor * difference * by_sensor.transpose()).symmetric_eigen();
+    let least = LEAST_PART * eigen.eigenvalues.max();
+    let seen = || (0..3).filter(|idx| eigen.eigenvalues[*idx] > least);
     let chi_square: f64 =
-        seen().map(|idx| eigen.eigenvectors.column(idx).dot(&difference).powi(2) / eigen.eigenvalues[idx]).sum();
+        seen().map(|idx| eigen.eigenvectors.column(idx).dot(shift_in_sensor).powi(2) / eigen.eigenvalues[idx]).sum();
     let freedom = seen().fold(0.0, |count, _| count + 1.0);
     let degrees = alone.uncertainty.as_ref().map_or(f64::INFINITY, |known| known.degrees_of_freedom);
     stats::chi_squared_p_value(chi_square / doubt_in_the_noise(degrees), freedom)

@@ -9,6 +9,7 @@ use clap::ValueEnum;
 use crate::device::sim::{FaultSpec, Head, SimCell, SimOptions};
 use crate::device::{RobotKind, SensorKind};
 use crate::geometry::{PoseConvention, Rigid};
+use crate::scene::PartKind;
 
 use super::{EXIT_WRONG_INPUT, fail, print};
 
@@ -65,6 +66,34 @@ impl SensorArg {
     }
 }
 
+/// What stands before the robot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum TargetArg {
+    /// A ball on a post.
+    #[default]
+    Ball,
+    /// A right-angle plate on a table.
+    Plate,
+    /// A pin that ends in a point.
+    Pin,
+    /// A square block on one of its edges.
+    Square,
+    /// A row of teeth.
+    Teeth,
+}
+
+impl TargetArg {
+    const fn part(self) -> Option<PartKind> {
+        match self {
+            Self::Ball => None,
+            Self::Plate => Some(PartKind::Plate),
+            Self::Pin => Some(PartKind::Pin),
+            Self::Square => Some(PartKind::Square),
+            Self::Teeth => Some(PartKind::Teeth),
+        }
+    }
+}
+
 /// Arguments of `handeye cell`.
 #[derive(Clone, Debug, clap::Args)]
 pub struct CellArgs {
@@ -77,6 +106,9 @@ pub struct CellArgs {
     /// The profiler's head: lj-v7060, lj-v7080, lj-v7200 or lj-v7300.
     #[arg(long, value_name = "NAME", default_value = Head::default().id, value_parser = head)]
     pub head: Head,
+    /// What stands before the robot.
+    #[arg(long, value_enum, default_value_t)]
+    pub target: TargetArg,
     /// Radius of the ball, mm.
     #[arg(long, value_name = "MM", default_value_t = SimOptions::default().radius_mm, value_parser = radius_mm, allow_negative_numbers = true)]
     pub radius_mm: f64,
@@ -132,6 +164,7 @@ fn options(args: &CellArgs) -> SimOptions {
         time_scale: args.time_scale,
         head: args.head,
         radius_mm: args.radius_mm,
+        part: args.target.part(),
         is_noisy: !args.noise_free,
         faults: args.fault.clone(),
         ..SimOptions::default()
@@ -151,12 +184,23 @@ fn description(args: &CellArgs, cell: &SimCell) -> String {
     if cell.sensor_setup.is_z_inverted {
         text.push_str("profiles: z grows towards the head; turn it about for what follows\n");
     }
-    let _ = writeln!(text, "ball: radius {} mm", truth.radius_mm);
+    match args.target.to_possible_value().filter(|_| truth.base_from_part.is_some()) {
+        Some(part) => {
+            let _ = writeln!(text, "target: {}", part.get_name());
+        }
+        None => {
+            let _ = writeln!(text, "ball: radius {} mm", truth.radius_mm);
+        }
+    }
     let _ = writeln!(text, "drawing: flange_from_sensor {}", pose(&truth.rough_flange_from_sensor, convention, 1));
     if args.truth {
         let _ = writeln!(text, "truth: flange_from_sensor {}", pose(&truth.flange_from_sensor, convention, 4));
-        let [x, y, z] = truth.ball_in_base.into();
-        let _ = writeln!(text, "truth: ball_in_base x {x:.4} y {y:.4} z {z:.4} mm");
+        if let Some(base_from_part) = &truth.base_from_part {
+            let _ = writeln!(text, "truth: base_from_part {}", pose(base_from_part, convention, 4));
+        } else {
+            let [x, y, z] = truth.ball_in_base.into();
+            let _ = writeln!(text, "truth: ball_in_base x {x:.4} y {y:.4} z {z:.4} mm");
+        }
         let [position_mm, orientation_deg] = truth.pose_std_mm_deg;
         let _ = writeln!(
             text,
@@ -212,6 +256,7 @@ mod tests {
     fn wrong_arguments_are_refused_by_name() {
         for (arguments, culprit) in [
             ("--robot abb", "--robot"),
+            ("--target moon", "--target"),
             ("--sensor folder", "--sensor"),
             ("--head lj-v1", "expected one of lj-v7060"),
             ("--fault mute", "expected a fault (split-frames"),

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use crate::calibrate::Warning;
 use crate::session::check::{Finding, findings};
 use crate::session::format::{Loaded, load_with_notes};
-use crate::session::{self, FurtherTarget, Session, measure};
+use crate::session::{self, FurtherTarget, NothingToSolve, Session, measure};
 use crate::text::check::finding_message;
 use crate::text::warning_message;
 use crate::watch::Unwatched;
@@ -73,6 +73,8 @@ fn outcome_of_all_methods(session: &Session) -> (Vec<Warning>, Option<String>) {
     let Ok(measured) = measure(session, None, &mut Unwatched) else { return (Vec::new(), None) };
     let problem = match session::problem(session, &measured) {
         Ok(problem) => problem,
+        // A workpiece is scanned for what a calibration is worth: that none is computed from it is not odd.
+        Err(NothingToSolve::Workpiece) => return (Vec::new(), None),
         Err(refusal) => return (Vec::new(), Some(refusal.to_string())),
     };
     let outcomes: Vec<_> = problem.methods().iter().map(|method| problem.solve(*method)).collect();

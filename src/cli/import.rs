@@ -62,7 +62,8 @@ pub struct ReadingArgs {
     /// 1,5 is one and a half.
     #[arg(long)]
     pub decimal_comma: bool,
-    /// What the columns are: x,y,z,a,b,c (angles) or q1,q2,q3,q4, px,py,pz, label, side, use, step, profile, - for none.
+    /// What the columns are: x,y,z,a,b,c (angles) or q1,q2,q3,q4, px,py,pz, label, side, edge, use, step, profile,
+    /// - for none.
     #[arg(long, value_parser = columns, value_name = "LIST")]
     pub columns: Option<Columns>,
     /// How three angles are written, as `pose_convention` of session files, e.g. kuka-abc.
@@ -103,6 +104,8 @@ pub enum TargetArg {
     Plate,
     /// A tip or pin.
     Point,
+    /// A part that was scanned.
+    Workpiece,
 }
 
 /// What a file is.
@@ -199,12 +202,13 @@ fn columns(list: &str) -> Result<Columns, String> {
             "pz" => Role::Point(2),
             "label" => Role::Label,
             "side" => Role::Side,
+            "edge" => Role::Edge,
             "use" => Role::Used,
             "step" => Role::Step,
             "profile" => Role::Profile,
             other => {
                 return Err(format!(
-                    "found {other}, expected x, y, z, a, b, c, q1 to q4, px, py, pz, label, side, use, step, profile or -"
+                    "found {other}, expected x, y, z, a, b, c, q1 to q4, px, py, pz, label, side, edge, use, step, profile or -"
                 ));
             }
         })
@@ -316,8 +320,12 @@ fn import(args: &ImportArgs) -> Result<String, String> {
         return Err(text::no_stations(sources.first().map_or("-", |source| source.name.as_str())));
     }
     let mut said = listing(&imported);
+    let num_without_edge = imported.stations.iter().filter(|station| station.edge.is_none()).count();
     let session = session(args, &sources, imported)?;
     save(&session, &args.out).map_err(|error| error.to_string())?;
+    if session.target == Target::RightAnglePlate && num_without_edge > 0 {
+        said.push_str(&text::edges_missing_line(num_without_edge));
+    }
     said.push_str(&text::imported_line(&out, session.stations.len(), session.num_captures()));
     Ok(said)
 }
@@ -390,6 +398,7 @@ fn session(args: &ImportArgs, sources: &[Source], imported: Imported) -> Result<
         (None | Some(TargetArg::Ball), Some(radius_mm)) => Some(Target::ball(radius_mm)),
         (Some(TargetArg::Plate), _) => Some(Target::RightAnglePlate),
         (Some(TargetArg::Point), _) => Some(Target::Point),
+        (Some(TargetArg::Workpiece), _) => Some(Target::Workpiece),
         // A session says itself what was measured.
         (None, None) if imported.session.is_some() => None,
         (None | Some(TargetArg::Ball), None) => return Err(text::RADIUS_MISSING.to_owned()),

@@ -5,13 +5,13 @@ use std::process::ExitCode;
 
 use serde_json::Value;
 
-use crate::calibrate::best_available;
+use crate::app::workbench::scans::best_calibration;
 use crate::geometry::{Flange, Sensor, Transform, Vec3};
-use crate::report::calibration_file::{NamedCalibration, read_calibration};
+use crate::report::calibration_file::read_calibration;
 use crate::report::scan_file::scan_file;
 use crate::scan::files::{CloudFormat, read_cloud, write_cloud};
 use crate::scan::{Cloud, PointSet, Region, RoundKind, SegmentOptions, Wanted, plane_regions, region_name, shapes};
-use crate::session::{self, Known, Session, SessionScan, measure};
+use crate::session::{self, Known, SessionScan};
 use crate::text::workpiece as words;
 use crate::watch::Unwatched;
 
@@ -138,7 +138,9 @@ fn from_session(args: &ScanArgs) -> Result<Vec<Case>, Refusal> {
     }
     let calibration = match &args.calibration {
         Some(path) => read_calibration(path).map_err(|error| wrong(error.to_string()))?,
-        None => own_calibration(&session).map_err(|reason| (EXIT_NOTHING_COMPUTED, words::no_calibration(&reason)))?,
+        None => best_calibration(&session, &mut Unwatched)
+            .unwrap_or_else(|cancelled| Err(cancelled.to_string()))
+            .map_err(|reason| (EXIT_NOTHING_COMPUTED, words::no_calibration(&reason)))?,
     };
     chosen.into_iter().map(|scan| case_of(scan, &calibration.name, &calibration.flange_from_sensor)).collect()
 }
@@ -158,26 +160,6 @@ fn case_of(
         .map_err(|error| (EXIT_NOTHING_COMPUTED, format!("{name}: {error}")))?;
     let num_profiles = Some(scan.captures.len());
     Ok(Case { name, num_profiles, calibration: Some(calibration.to_owned()), known: scan.known, cloud })
-}
-
-/// The best result of the session's own target, or of the first further one that has any.
-fn own_calibration(session: &Session) -> Result<NamedCalibration, String> {
-    let measured = measure(session, None, &mut Unwatched).map_err(|cancelled| cancelled.to_string())?;
-    let own = session::problem(session, &measured);
-    let further = (0..session.further.len()).map(|idx| session::problem_of(session, &measured, idx));
-    let mut reason = words::ONLY_A_WORKPIECE.to_owned();
-    for problem in std::iter::once(own).chain(further).flatten() {
-        let results =
-            problem.solve_all(problem.methods(), &mut Unwatched).map_err(|cancelled| cancelled.to_string())?;
-        if let Some(solution) = best_available(&results) {
-            let name = solution.method.id().to_owned();
-            return Ok(NamedCalibration { name, flange_from_sensor: solution.flange_from_sensor });
-        }
-        if let Some(error) = results.iter().find_map(|result| result.outcome.as_ref().err()) {
-            reason = error.to_string();
-        }
-    }
-    Err(reason)
 }
 
 /// What was measured, as text and as JSON.

@@ -1,5 +1,6 @@
 //! The ball's arc in a real profile: robust search, trimmed fit, and a reason where there is none.
 
+use crate::geometry::stats::robust_std_about_zero;
 use crate::geometry::{Mat3, Profile};
 
 use super::ransac::{CircleSearch, find_circle};
@@ -99,7 +100,7 @@ pub fn extract_arc(profile: &Profile, options: &ArcOptions) -> Result<ArcFit, Ar
     if x_mm.len() < MIN_POINTS {
         return Err(ArcRefusal::TooFewPoints { found: x_mm.len(), needed: MIN_POINTS });
     }
-    let noise_mm = options.profile_std_mm.unwrap_or_else(|| robust::local_noise(&z_mm));
+    let noise_mm = options.profile_std_mm.unwrap_or_else(|| local_noise(&z_mm));
     let tolerance_mm = (4.0 * noise_mm).max(SEARCH_TOLERANCE_PART * options.ball_radius_mm);
     let limit_mm = (1.0 + RADIUS_EXCESS) * options.ball_radius_mm;
     let start = if let Some(circle) = only_ball(&x_mm, &z_mm, limit_mm, tolerance_mm) {
@@ -193,6 +194,12 @@ fn search(
         }
     }
     found.map(|(circle, _)| circle).ok_or(ArcRefusal::NoArc { limit_mm, num_points: x_mm.len() })
+}
+
+/// Noise along the range axis from second differences, to which the shape of the ball adds next to nothing.
+fn local_noise(z_mm: &[f64]) -> f64 {
+    let mut differences: Vec<f64> = z_mm.windows(3).map(|z| (z[0] - 2.0 * z[1] + z[2]) / 6.0_f64.sqrt()).collect();
+    if differences.is_empty() { 0.0 } else { robust_std_about_zero(&mut differences) }
 }
 
 fn near(x_mm: &[f64], z_mm: &[f64], circle: Circle, distance_mm: f64) -> (Vec<f64>, Vec<f64>) {

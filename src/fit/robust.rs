@@ -3,7 +3,7 @@
 //! Two outliers in a hundred put a plain fit tens of times off; trimming with the scale taken from the data costs one
 //! per cent of efficiency on clean points and nothing else.
 
-use crate::geometry::stats::{STD_OVER_MAD, median, robust_std_about_zero};
+use crate::geometry::stats::{STD_OVER_MAD, median};
 
 use super::{Circle, CircleFit, FitError, algebraic, geometric};
 
@@ -87,11 +87,4 @@ fn keep_within(x_mm: &[f64], z_mm: &[f64], circle: Circle, limit_mm: f64, kept: 
     kept.x_mm.truncate(count);
     kept.z_mm.truncate(count);
     cost
-}
-
-/// Noise along the range axis from second differences, to which the shape of what is seen adds next to nothing.
-#[must_use]
-pub fn local_noise(z_mm: &[f64]) -> f64 {
-    let mut differences: Vec<f64> = z_mm.windows(3).map(|z| (z[0] - 2.0 * z[1] + z[2]) / 6.0_f64.sqrt()).collect();
-    if differences.is_empty() { 0.0 } else { robust_std_about_zero(&mut differences) }
 }

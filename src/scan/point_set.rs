@@ -68,6 +68,13 @@ impl PointSet {
         self.runs().flatten()
     }
 
+    /// Whether a point is among them.
+    #[must_use]
+    pub fn contains(&self, idx: usize) -> bool {
+        let after = self.runs.partition_point(|run| run.start as usize <= idx);
+        after.checked_sub(1).is_some_and(|run| idx < self.runs[run].end as usize)
+    }
+
     /// At most `most` of the indices, evenly spread.
     #[must_use]
     pub fn thinned(&self, most: usize) -> Vec<usize> {
@@ -178,6 +185,9 @@ mod tests {
         assert_eq!(middle.without(&all).len(), 0);
         assert_eq!(all.without(&PointSet::default()), all);
         assert_eq!(all.thinned(7).len(), 7);
+        assert!(
+            (0..20).all(|idx| middle.contains(idx) == (5..11).contains(&idx) && !PointSet::default().contains(idx))
+        );
     }
 
     #[test]

@@ -12,7 +12,8 @@ use crate::geometry::{PoseNotation, Profile};
 
 use super::edit::{Place, shown_numbers};
 use super::import::Separator;
-use super::{Reading, Session};
+use super::table::edge_text;
+use super::{Reading, Session, Target};
 
 /// How the cells are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,9 +76,12 @@ pub fn poses_csv(session: &Session, notation: &PoseNotation, style: TableStyle) 
         _ => "",
     };
     let orientation = notation.orientation_names().iter().map(|name| format!("{name}{angle_unit}"));
-    let head: Vec<String> = ["label", "capture", "side", "enabled", "step_mm"]
-        .map(str::to_owned)
+    let has_edges = session.target == Target::RightAnglePlate;
+    let head: Vec<String> = ["label", "capture", "side"]
         .into_iter()
+        .chain(has_edges.then_some("edge"))
+        .chain(["enabled", "step_mm"])
+        .map(str::to_owned)
         .chain(position)
         .chain(orientation)
         .chain(["point_x_mm", "point_y_mm", "point_z_mm", "profile"].map(str::to_owned))
@@ -88,13 +92,12 @@ pub fn poses_csv(session: &Session, notation: &PoseNotation, style: TableStyle) 
                 SideChoice::Auto => "auto",
                 SideChoice::Given(side) => side.symbol(),
             };
-            let mut row = vec![
-                station.label.clone(),
-                (capture_idx + 1).to_string(),
-                side.to_owned(),
+            let mut row = vec![station.label.clone(), (capture_idx + 1).to_string(), side.to_owned()];
+            row.extend(has_edges.then(|| station.edge.map_or("", edge_text).to_owned()));
+            row.extend([
                 if station.enabled { "yes" } else { "no" }.to_owned(),
                 capture.step_mm.map_or_else(String::new, |step_mm| style.number(step_mm)),
-            ];
+            ]);
             row.extend(shown_numbers(capture, notation).iter().map(|number| style.number(*number)));
             match &capture.reading {
                 Reading::Point(point_in_sensor) => {

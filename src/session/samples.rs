@@ -27,4 +27,8 @@ pub const ALL: &[Sample] = samples![
     "few-rotations.json",
     "near-largest-arc.json",
     "one-bad-pose.json",
+    "plate.json",
+    "tip.json",
+    "workpiece.json",
+    "three-targets.json",
 ];

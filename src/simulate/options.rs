@@ -155,8 +155,16 @@ impl SimulationOptions {
 
     /// Those of a further target, measured by the same sensor on the same robot.
     pub(super) fn of_further(&self, idx: usize, target: SimulationTarget) -> Self {
-        let usual = Self::of(target);
-        let radius_ratio = self.radius_mm / usual.radius_mm;
+        let mut usual = Self::of(target);
+        match target {
+            SimulationTarget::Ball => usual.step_mm *= self.radius_mm / usual.radius_mm,
+            // One path for all workpieces.
+            SimulationTarget::Part(kind) if target.is_workpiece() && self.target.is_workpiece() => {
+                usual.step_mm = self.step_mm;
+                usual.num_steps = Self::steps_to_scan(kind, self.step_mm);
+            }
+            SimulationTarget::Part(_) => {}
+        }
         Self {
             // Its noise is its own.
             seed: self.seed.wrapping_add((idx as u64 + 1).wrapping_mul(0x1_0000_0001)),
@@ -164,7 +172,7 @@ impl SimulationOptions {
             further: Vec::new(),
             num_stations: usual.num_stations,
             num_steps: usual.num_steps,
-            step_mm: if target == SimulationTarget::Ball { radius_ratio * usual.step_mm } else { usual.step_mm },
+            step_mm: usual.step_mm,
             section_offset_mm: usual.section_offset_mm,
             tilt_deg: usual.tilt_deg,
             spin_deg: usual.spin_deg,

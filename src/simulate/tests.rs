@@ -6,6 +6,8 @@ use super::*;
 use crate::calibrate::{Edge, Mount};
 use crate::scene::PartKind;
 use crate::session::format::{parse, to_json};
+use crate::session::{self, measure};
+use crate::watch::Unwatched;
 
 /// What f64 holds at 800 mm, with a chain of four transforms.
 const EXACT_MM: f64 = 1e-9;
@@ -375,4 +377,23 @@ fn scans_follow_the_part_at_their_step() {
     }
     let usual = SimulationOptions::of(SimulationTarget::Part(PartKind::Square));
     assert_eq!(usual.num_steps, 181, "60 mm at 0.33 mm");
+}
+
+#[test]
+fn exact_points_of_a_plate_and_of_a_pin_give_the_true_calibration() {
+    for (kind, mount) in
+        [PartKind::Plate, PartKind::Pin].into_iter().flat_map(|kind| [(kind, Mount::OnFlange), (kind, Mount::Fixed)])
+    {
+        let session = simulate(&SimulationOptions { num_stations: 9, has_points: true, mount, ..exact(kind) });
+        let measured = measure(&session, None, &mut Unwatched).expect("not cancelled");
+        let problem = session::problem(&session, &measured).expect("a target to calibrate from");
+        let truth = session.truth.as_ref().expect("simulated").flange_from_sensor;
+        for method in problem.methods() {
+            let found = problem.solve(*method).unwrap_or_else(|error| panic!("{kind:?}, {method:?}: {error}"));
+            let off_mm = (found.flange_from_sensor.translation_mm() - truth.translation_mm()).norm();
+            let off_deg = found.flange_from_sensor.rotation().angle_to(&truth.rotation()).to_degrees();
+            // What is asked of the methods on exact data.
+            assert!(off_mm < 1e-6 && off_deg < 1e-7, "{kind:?}, {mount:?}, {method:?}: {off_mm} mm, {off_deg}°");
+        }
+    }
 }

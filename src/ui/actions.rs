@@ -6,7 +6,7 @@ use crate::app::{Document, Workbench};
 use crate::session::{Capture, Reading};
 use crate::text::{
     capture as capture_words, document as document_words, import as import_words, shell as words,
-    verify as verify_words,
+    verify as verify_words, workpiece as workpiece_words,
 };
 
 use super::rail::Step;
@@ -38,6 +38,12 @@ pub enum Action {
     ExportPoses,
     /// Asks for a folder and writes the profiles as CSV.
     ExportProfiles,
+    /// Asks for a file and writes the points of the scan on the bench.
+    ExportPoints,
+    /// Asks for a file of points.
+    OpenPoints,
+    /// Asks for the file with the calibration that a scan is seen through.
+    ChooseCalibration,
     /// Saves to the session's file, asking for one where there is none.
     Save,
     /// Asks for a file and saves there.
@@ -98,7 +104,10 @@ impl Action {
             | Self::Practise
             | Self::EndPractice
             | Self::ExportPoses
-            | Self::ExportProfiles => return None,
+            | Self::ExportProfiles
+            | Self::ExportPoints
+            | Self::OpenPoints
+            | Self::ChooseCalibration => return None,
         };
         Some(KeyboardShortcut::new(modifiers, key))
     }
@@ -120,6 +129,9 @@ impl Action {
             Self::EndPractice => capture_words::END_PRACTICE.to_owned(),
             Self::ExportPoses => import_words::EXPORT_POSES.to_owned(),
             Self::ExportProfiles => import_words::EXPORT_PROFILES.to_owned(),
+            Self::ExportPoints => workpiece_words::EXPORT_POINTS.to_owned(),
+            Self::OpenPoints => workpiece_words::OPEN_POINTS.to_owned(),
+            Self::ChooseCalibration => workpiece_words::CHOOSE_CALIBRATION.to_owned(),
             Self::Save => words::SAVE.to_owned(),
             Self::SaveAs => words::SAVE_AS.to_owned(),
             Self::Close => words::CLOSE.to_owned(),
@@ -165,6 +177,9 @@ impl Action {
             | Self::ImportFolder
             | Self::Paste
             | Self::ChooseWatchedFolder
+            | Self::ExportPoints
+            | Self::OpenPoints
+            | Self::ChooseCalibration
             | Self::Quit
             | Self::Help
             | Self::GoTo(_) => None,

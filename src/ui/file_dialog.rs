@@ -6,7 +6,10 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::app::jobs::Wake;
-use crate::text::{capture as capture_words, import as import_words, shell as words, verify as verify_words};
+use crate::text::{
+    capture as capture_words, import as import_words, shell as words, verify as verify_words,
+    workpiece as workpiece_words,
+};
 
 /// Nobody cancels a dialog faster than this; so quick a "nothing chosen" means that no dialog came up.
 const FASTEST_CANCEL: Duration = Duration::from_millis(500);
@@ -30,6 +33,12 @@ pub enum Purpose {
     ExportPoses,
     /// Choosing a folder to write the profiles to.
     ExportProfiles,
+    /// Choosing a file to write points to.
+    ExportPoints,
+    /// Choosing a file of points.
+    OpenPoints,
+    /// Choosing a file with a calibration.
+    Calibration,
     /// Choosing the folder that a profiler's software saves profiles into.
     WatchedFolder,
 }
@@ -50,6 +59,9 @@ impl Purpose {
             Self::AddFurther => verify_words::ADD_TARGET_TITLE,
             Self::ExportPoses => import_words::EXPORT_POSES_TITLE,
             Self::ExportProfiles => import_words::EXPORT_PROFILES_TITLE,
+            Self::ExportPoints => workpiece_words::EXPORT_POINTS_TITLE,
+            Self::OpenPoints => workpiece_words::OPEN_POINTS_TITLE,
+            Self::Calibration => workpiece_words::CALIBRATION_TITLE,
             Self::WatchedFolder => capture_words::FOLDER_TITLE,
         }
     }
@@ -58,11 +70,12 @@ impl Purpose {
     #[must_use]
     pub const fn button(self) -> &'static str {
         match self {
-            Self::Open => words::OPEN,
+            Self::Open | Self::OpenPoints => words::OPEN,
+            Self::Calibration => workpiece_words::USE_BUTTON,
             Self::Save => words::SAVE,
             Self::ImportFiles | Self::ImportFolder | Self::AddSession => import_words::IMPORT_BUTTON,
             Self::AddFurther => verify_words::ADD_TARGET_BUTTON,
-            Self::ExportPoses | Self::ExportProfiles => import_words::EXPORT_BUTTON,
+            Self::ExportPoses | Self::ExportProfiles | Self::ExportPoints => import_words::EXPORT_BUTTON,
             Self::WatchedFolder => capture_words::FOLDER_BUTTON,
         }
     }
@@ -70,7 +83,7 @@ impl Purpose {
     /// Whether a file is written, so that one that is there is replaced.
     #[must_use]
     pub const fn writes_a_file(self) -> bool {
-        matches!(self, Self::Save | Self::ExportPoses)
+        matches!(self, Self::Save | Self::ExportPoses | Self::ExportPoints)
     }
 }
 
@@ -150,6 +163,15 @@ fn ask(purpose: Purpose, suggested_name: &str) -> Answer {
             let dialog = dialog.add_filter(import_words::CSV_FILTER, &["csv"]);
             dialog.set_file_name(suggested_name).save_file().map(one)
         }
+        Purpose::ExportPoints => {
+            let dialog = dialog.add_filter(workpiece_words::POINTS_FILTER, &["ply", "csv"]);
+            dialog.set_file_name(suggested_name).save_file().map(one)
+        }
+        Purpose::OpenPoints => {
+            let dialog = dialog.add_filter(workpiece_words::POINTS_FILTER, &["ply", "csv", "xyz", "txt", "asc", "pts"]);
+            all(dialog).pick_file().map(one)
+        }
+        Purpose::Calibration => all(dialog).pick_file().map(one),
         Purpose::ImportFolder | Purpose::ExportProfiles | Purpose::WatchedFolder => dialog.pick_folder().map(one),
     };
     match chosen.filter(|paths| !paths.is_empty()) {

@@ -7,6 +7,7 @@ pub mod actions;
 pub mod arcs;
 pub mod capture;
 pub mod charts;
+pub mod cloud;
 pub mod compare;
 pub mod diagnosis;
 pub mod dialogs;

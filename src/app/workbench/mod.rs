@@ -6,6 +6,7 @@ mod exports;
 mod files;
 mod imports;
 mod keeping;
+pub mod scans;
 mod studies;
 mod verifying;
 
@@ -30,6 +31,7 @@ use self::exports::Exported;
 use self::files::{Loaded, Look, Save, SaveOutcome};
 pub use self::imports::ImportDraft;
 use self::imports::Imports;
+use self::scans::Scans;
 pub use self::studies::Results;
 use self::verifying::Added;
 
@@ -107,6 +109,7 @@ pub struct Workbench {
     adding: Slot<Added>,
     imports: Imports,
     exporting: Slot<Exported>,
+    scans: Scans,
     cell: LiveCell,
 }
 
@@ -142,6 +145,7 @@ impl Workbench {
             adding: Slot::default(),
             imports: Imports::default(),
             exporting: Slot::default(),
+            scans: Scans::default(),
             cell: LiveCell::default(),
         }
     }
@@ -251,6 +255,7 @@ impl Workbench {
             || self.adding.is_running()
             || self.imports.is_busy()
             || self.exporting.is_running()
+            || self.scans.is_busy()
     }
 
     /// Carries out one command.
@@ -300,6 +305,7 @@ impl Workbench {
             Command::AddFurther(path) => self.start_adding_further(path),
             Command::GiveCalibration(calibration) => self.give_calibration(*calibration),
             Command::WithdrawCalibration(name) => self.withdraw_calibration(&name),
+            Command::Scan(command) => self.command_scans(*command),
             Command::Cell(command) => self.command_cell(*command),
             Command::DismissNotice(id) => self.notices.retain(|notice| notice.id != id),
         }
@@ -348,7 +354,7 @@ impl Workbench {
             self.take_added(outcome);
         }
         let imported = self.poll_imports();
-        let exported = self.poll_exports();
+        let exported = self.poll_exports() | self.poll_scans();
         // Last, as a run goes on once the results of its last station are there.
         let cell = self.poll_cell();
         changed || imported || exported || cell

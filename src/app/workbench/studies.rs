@@ -44,6 +44,7 @@ impl Results {
 
 impl Workbench {
     pub(super) fn forget_results(&mut self) {
+        self.forget_scans();
         self.results = None;
         self.diagnosis.clear();
         self.plan.clear();

@@ -266,6 +266,10 @@ pub(super) fn change_by_radius(
     hessian: &Hessian,
     gradient_at: impl Fn(f64) -> Result<Gradient, SolveError>,
 ) -> Result<Gradient, SolveError> {
+    if radius_mm <= 0.0 {
+        // A tip has no radius to follow.
+        return Ok(Gradient::zeros());
+    }
     let step_mm = RADIUS_STEP_PART * radius_mm;
     let slope = (gradient_at(radius_mm + step_mm)? - gradient_at(radius_mm - step_mm)?) / (2.0 * step_mm);
     Ok(covariance_for_unit_noise(hessian)? * slope)

@@ -53,7 +53,7 @@ impl Found<'_> {
             points: std::mem::take(&mut self.points),
             state,
         };
-        let left_out = self.left_out(&reduced);
+        let left_out = left_out(&reduced);
         let in_sample: Vec<f64> = reduced.points.iter().map(|point| state.off_edge(point).norm()).collect();
         let poses: Vec<Rigid> = self.measured.iter().map(|measured| measured.point.base_from_flange).collect();
         let span = rotation_span(&poses);
@@ -112,16 +112,6 @@ impl Found<'_> {
         })
     }
 
-    /// For each point its distance from the edge of the solution made without its station, mm.
-    fn left_out(&self, reduced: &PlateReduced) -> Vec<Option<f64>> {
-        let without = reduced.without_each();
-        reduced
-            .points
-            .iter()
-            .map(|point| without[point.station].map(|refit| refit.state.off_edge(point).norm()))
-            .collect()
-    }
-
     fn reference_point(&self) -> Vec3 {
         let points = || self.measured.iter().map(|measured| measured.point.point_in_sensor);
         self.problem.reference_distance_mm.map_or_else(
@@ -158,4 +148,10 @@ impl Found<'_> {
         }
         self.warnings.extend(refused_captures(self.problem.stations.iter().map(|station| &station.station)));
     }
+}
+
+/// For each point its distance from the edge of the solution made without its station, mm.
+fn left_out(reduced: &PlateReduced) -> Vec<Option<f64>> {
+    let without = reduced.without_each();
+    reduced.points.iter().map(|point| without[point.station].map(|refit| refit.state.off_edge(point).norm())).collect()
 }

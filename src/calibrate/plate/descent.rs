@@ -129,7 +129,7 @@ pub fn inverse_of<const N: usize>(hessian: &SMatrix<f64, N, N>) -> Result<SMatri
     let inverse = factor.inverse();
     // Frobenius norms bound the condition number from above by no more than N.
     let condition = scaled.norm() * inverse.norm();
-    if !(condition < MAX_CONDITION) {
+    if condition.is_nan() || condition >= MAX_CONDITION {
         return Err(SolveError::Undetermined { condition });
     }
     Ok(SMatrix::from_fn(|row, column| inverse[(row, column)] * scaling[row] * scaling[column]))

@@ -4,15 +4,25 @@ use nalgebra::{Matrix2, SymmetricEigen};
 
 use crate::calibrate::rotation_start::octahedral_rotations;
 use crate::calibrate::{Edge, PlateProblem};
-use crate::geometry::so3::nearest_rotation;
+use crate::geometry::so3::{self, nearest_rotation};
 use crate::geometry::{Mat3, Rigid, Vec3};
 
 use super::points::{EdgePoint, PlateState};
 
+/// Turns of the operator's rough mounting to begin at as well, rad: about as far off as it may be.
+const ROUGHLY: f64 = 0.26;
+
 /// The places to begin at: sensors on the flange.
 pub(super) fn starts(problem: &PlateProblem) -> Vec<Rigid> {
     match &problem.rough_flange_from_sensor {
-        Some(rough) => vec![*rough.rigid()],
+        Some(rough) => {
+            let axes = [Vec3::x(), Vec3::y(), Vec3::z()];
+            let turns = axes.iter().flat_map(|axis| [axis * ROUGHLY, axis * -ROUGHLY]);
+            std::iter::once(Vec3::zeros())
+                .chain(turns)
+                .map(|turn| Rigid::from_parts(rough.rigid().translation, rough.rotation() * so3::exp(turn)))
+                .collect()
+        }
         None => octahedral_rotations()
             .into_iter()
             .map(|rotation| Rigid::from_parts(nalgebra::Translation3::identity(), rotation))

@@ -1,10 +1,10 @@
 //! Heads of laser profilers, of the sizes of the LJ-V7000 series, and what they see of a scene.
 
 use crate::geometry::{Rigid, Vec3};
-use crate::scene::{MAX_INCIDENCE_DEG, Random, Scene, Surface};
+use crate::scene::Random;
 
-/// Light that leaves the surface flatter than this does not get into the camera, degrees.
-const MAX_RETURN_DEG: f64 = 80.0;
+use super::subject::{Eyes, Subject};
+
 /// The part of single points that are lost for no reason.
 const DROPOUT_PART: f64 = 0.004;
 
@@ -104,29 +104,23 @@ impl Head {
     /// measured where both see it, and neither too flatly.
     ///
     /// # Frame and units
-    /// x across the line, z away from the sensor, 0 at the reference distance; mm. `scene` has a range sign of +1.
+    /// x across the line, z away from the sensor, 0 at the reference distance; mm.
     #[must_use]
-    pub fn see(&self, scene: &Scene, base_from_sensor: &Rigid, noise: &mut Random) -> Vec<Height> {
-        let ball_in_sensor = base_from_sensor.inverse_transform_point(&scene.ball_in_world.into()).coords;
+    pub fn see(&self, subject: &Subject, base_from_sensor: &Rigid, noise: &mut Random) -> Vec<Height> {
+        let aside_mm = self.reference_mm * self.triangulation_deg.to_radians().tan();
         let laser = Vec3::new(0.0, 0.0, -self.reference_mm);
-        let camera = Vec3::new(0.0, self.reference_mm * self.triangulation_deg.to_radians().tan(), -self.reference_mm);
-        let sight = Sight { ball_in_sensor, radius_mm: scene.radius_mm, laser, camera };
+        let eyes = Eyes { laser, camera: laser + Vec3::y() * aside_mm };
         (0..Self::NUM_POINTS)
             .map(|idx| {
                 // Drawn for every point, so that what one point hits does not shift the noise of the next.
-                let error_mm = scene.profile_std_mm * noise.normal();
-                let is_lost = scene.dirt.has_holes && noise.unit() < DROPOUT_PART;
+                let error_mm = subject.profile_std_mm() * noise.normal();
+                let is_lost = subject.loses_points() && noise.unit() < DROPOUT_PART;
                 let x_mm = self.x_mm(idx);
-                let Some(surface) = scene.surface_at(x_mm, ball_in_sensor, base_from_sensor) else {
-                    return Height::NoPeak;
-                };
-                let (Surface::Ball { z_mm, .. } | Surface::Table { z_mm }) = surface;
-                if !self.is_in_range(x_mm, z_mm) {
-                    Height::DeadZone
-                } else if is_lost || !sight.sees(Vec3::new(x_mm, 0.0, z_mm), surface) {
-                    Height::NoPeak
-                } else {
-                    Height::Measured { z_mm: z_mm + error_mm }
+                match subject.met_at(x_mm, base_from_sensor, &eyes) {
+                    None => Height::NoPeak,
+                    Some(met) if !self.is_in_range(x_mm, met.z_mm) => Height::DeadZone,
+                    Some(met) if is_lost || !met.is_seen => Height::NoPeak,
+                    Some(met) => Height::Measured { z_mm: met.z_mm + error_mm },
                 }
             })
             .collect()
@@ -154,46 +148,18 @@ pub enum Height {
     DeadZone,
 }
 
-/// The ball between the surfaces, the laser and the camera; all in the sensor, mm.
-struct Sight {
-    ball_in_sensor: Vec3,
-    radius_mm: f64,
-    laser: Vec3,
-    camera: Vec3,
-}
-
-impl Sight {
-    fn sees(&self, point: Vec3, surface: Surface) -> bool {
-        match surface {
-            Surface::Ball { .. } => {
-                let normal = (point - self.ball_in_sensor) / self.radius_mm;
-                let flatness_deg = |eye: Vec3| normal.angle(&(eye - point)).to_degrees();
-                flatness_deg(self.laser) <= MAX_INCIDENCE_DEG && flatness_deg(self.camera) <= MAX_RETURN_DEG
-            }
-            Surface::Table { .. } => !self.is_hidden(point, self.laser) && !self.is_hidden(point, self.camera),
-        }
-    }
-
-    /// Whether the ball stands between a point and an eye.
-    fn is_hidden(&self, point: Vec3, eye: Vec3) -> bool {
-        let way = eye - point;
-        let nearest = ((self.ball_in_sensor - point).dot(&way) / way.norm_squared()).clamp(0.0, 1.0);
-        (point + way * nearest - self.ball_in_sensor).norm() < self.radius_mm
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::fit::{ArcOptions, extract_arc};
     use crate::geometry::Profile;
-    use crate::scene::Dirt;
+    use crate::scene::{Dirt, Part, PartKind, Scene};
 
     const RADIUS_MM: f64 = 15.0;
 
     /// The heights of a quiet head over a ball at this place in it.
     fn heights(head: &Head, ball_in_sensor: Vec3) -> Vec<Height> {
-        let scene = Scene {
+        let ball = Subject::Ball(Scene {
             ball_in_world: Vec3::new(ball_in_sensor.x, -ball_in_sensor.y, -ball_in_sensor.z),
             radius_mm: RADIUS_MM,
             num_points: usize::from(Head::NUM_POINTS),
@@ -201,10 +167,10 @@ mod tests {
             profile_std_mm: 0.0,
             dirt: Dirt::default(),
             decimals: None,
-        };
+        });
         // The sensor at the world's origin, looking down.
         let down = Rigid::rotation(Vec3::x() * std::f64::consts::PI);
-        head.see(&scene, &down, &mut Random::new(1, 0))
+        head.see(&ball, &down, &mut Random::new(1, 0))
     }
 
     fn measured(head: &Head, heights: &[Height]) -> Vec<(f64, f64)> {
@@ -263,6 +229,40 @@ mod tests {
         let head = Head::default();
         for z_mm in [-120.0, 80.0] {
             assert!(measured(&head, &heights(&head, Vec3::new(0.0, 0.0, z_mm))).is_empty(), "{z_mm}");
+        }
+    }
+
+    /// What a quiet head measures of a part whose origin is there in it, looking straight down.
+    fn of_part(kind: PartKind, turn: f64, origin_in_sensor: Vec3) -> Vec<(f64, f64)> {
+        let head = Head::default();
+        let down = Rigid::rotation(Vec3::x() * std::f64::consts::PI);
+        let origin = down * nalgebra::Point3::from(origin_in_sensor);
+        let place = Rigid::from_parts(origin.coords.into(), crate::geometry::so3::exp(Vec3::z() * turn));
+        let subject = Subject::Part { part: Part::new(kind, place), profile_std_mm: 0.0, loses_points: false };
+        measured(&head, &head.see(&subject, &down, &mut Random::new(1, 0)))
+    }
+
+    #[test]
+    fn a_plate_ends_where_it_is_and_hides_the_table_from_the_fan() {
+        // Its edge q across the line at x = 5 mm, the plate towards +x.
+        let seen = of_part(PartKind::Plate, 0.0, Vec3::new(5.0, 40.0, 0.0));
+        let of_plate: Vec<f64> = seen.iter().filter(|(_, z_mm)| z_mm.abs() < 1e-9).map(|(x_mm, _)| *x_mm).collect();
+        let of_table: Vec<f64> =
+            seen.iter().filter(|(_, z_mm)| (z_mm - 10.0).abs() < 1e-9).map(|(x_mm, _)| *x_mm).collect();
+        assert_eq!(of_plate.len() + of_table.len(), seen.len());
+        let first = of_plate.iter().copied().fold(f64::INFINITY, f64::min);
+        assert!((5.0..5.0 + Head::default().pitch_mm).contains(&first), "{first}");
+        let last = of_table.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        // The laser comes from x = 0, so it lights the table up to the plate.
+        assert!(last < 5.0 && last > 4.0, "{last}");
+    }
+
+    #[test]
+    fn a_pin_a_block_and_teeth_show_their_tops() {
+        for kind in [PartKind::Pin, PartKind::Square, PartKind::Teeth, PartKind::Cylinder] {
+            let seen = of_part(kind, 0.0, Vec3::zeros());
+            let (_, top_mm) = seen.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1)).expect("points");
+            assert!(top_mm.abs() < 0.1 && seen.len() > 100, "{kind:?}: {top_mm}, {} points", seen.len());
         }
     }
 }

@@ -1,9 +1,12 @@
-//! Where things stand in a simulated cell: the arm's first pose, the sensor on its flange, the ball before it.
+//! Where things stand in a simulated cell: the arm's first pose, the sensor on its flange, the ball or part before it.
+
+use std::f64::consts::FRAC_PI_4;
 
 use nalgebra::Translation3;
 
 use crate::device::setup::RobotKind;
 use crate::geometry::{Rigid, Vec3, so3};
+use crate::scene::PartKind;
 
 use super::chain::{Chain, Joints};
 use super::head::Head;
@@ -18,6 +21,9 @@ const DRAWING_TURN: Vec3 = Vec3::new(-0.030, 0.038, 0.022);
 const DRAWING_SHIFT_MM: [f64; 3] = [3.1, -2.6, 3.0];
 /// Where the ball's middle lies in the laser plane at first, and how far off it, radii.
 const FIRST_VIEW_RADII: [f64; 2] = [0.12, 0.4];
+
+/// Where the line crosses the plate's edge p at first, from the corner, mm.
+const PLATE_AIM_MM: f64 = 60.0;
 
 /// A cell before anything has moved.
 #[derive(Clone, Debug)]
@@ -59,6 +65,21 @@ impl Layout {
         let base_from_sensor = chain.base_from_flange(&home) * flange_from_sensor;
         let ball_in_base = (base_from_sensor * nalgebra::Point3::from(ball_in_sensor)).coords;
         Self { chain, home, flange_from_sensor, rough_flange_from_sensor, ball_in_base }
+    }
+
+    /// Where a part stands in place of the ball: level, and so that the line is on it at the first pose. A plate's edges are
+    /// both within reach of its corner, and the line crosses them alike.
+    #[must_use]
+    pub fn base_from_part(&self, kind: PartKind) -> Rigid {
+        let base_from_sensor = self.chain.base_from_flange(&self.home) * self.flange_from_sensor;
+        let line = base_from_sensor.rotation * Vec3::x();
+        let (halfway, aim) = match kind {
+            PartKind::Plate => (FRAC_PI_4, Vec3::x() * PLATE_AIM_MM),
+            PartKind::Pin | PartKind::Square | PartKind::Teeth | PartKind::Cylinder => (0.0, Vec3::zeros()),
+        };
+        let rotation = so3::exp(Vec3::z() * (line.y.atan2(line.x) - halfway));
+        let aim_in_base = base_from_sensor.translation.vector;
+        Rigid::from_parts((aim_in_base - rotation * aim).into(), rotation)
     }
 }
 

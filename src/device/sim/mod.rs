@@ -1,7 +1,7 @@
 //! A simulated cell that serves the real protocols on loopback: for practice, and for tests.
 //!
-//! An arm with its real reach (`chain`, `motion`), a profiler with its real field of view (`head`) and a ball on a post
-//! stand in one `world`; `server` answers for them in the messages of the drivers, over `net`. `fault` says what goes
+//! An arm with its real reach (`chain`, `motion`), a profiler with its real field of view (`head`) and a ball on a post or a
+//! part on a table (`subject`) stand in one `world`; `server` answers for them in the messages of the drivers, over `net`. `fault` says what goes
 //! wrong on request. What is not simulated: collisions, the arm's dynamics, the optics beyond what is hidden or too flat.
 
 pub mod chain;
@@ -12,11 +12,13 @@ pub mod motion;
 mod net;
 mod ports;
 mod server;
+mod subject;
 mod world;
 
 use std::path::PathBuf;
 
 use crate::geometry::{Rigid, Vec3};
+use crate::scene::PartKind;
 
 use super::error::{DeviceError, system_words};
 use super::setup::{Endpoint, RobotKind, RobotSetup, SensorKind, SensorSetup};
@@ -44,6 +46,8 @@ pub struct SimOptions {
     pub head: Head,
     /// Radius of the ball, mm.
     pub radius_mm: f64,
+    /// What stands there in place of the ball.
+    pub part: Option<PartKind>,
     /// The tool point that the operator has made active; only Universal Robots go by it.
     pub flange_from_tcp: Rigid,
     /// Whether poses and profiles have noise, and profiles lost points.
@@ -62,6 +66,7 @@ impl Default for SimOptions {
             time_scale: 1.0,
             head: Head::default(),
             radius_mm: 15.0,
+            part: None,
             flange_from_tcp: Rigid::identity(),
             is_noisy: true,
             faults: Vec::new(),
@@ -74,11 +79,13 @@ impl Default for SimOptions {
 pub struct SimTruth {
     /// The calibration, for profiles whose z grows away from the sensor and is 0 at the reference distance.
     pub flange_from_sensor: Rigid,
-    /// The ball's centre, mm.
+    /// The ball's centre, mm; where it would be, with a part in its place.
     pub ball_in_base: Vec3,
     /// Its radius, mm.
     pub radius_mm: f64,
-    /// How far [`Fault::BallMoved`] pushes it, mm.
+    /// The part that stands there in place of the ball, in the frame that its kind has.
+    pub base_from_part: Option<Rigid>,
+    /// How far [`Fault::BallMoved`] pushes it, or the part, mm.
     pub push_mm: Vec3,
     /// The mounting as a drawing would have it: off by some degrees and millimetres.
     pub rough_flange_from_sensor: Rigid,

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 use crate::fit::line::LineFit;
+use crate::geometry::stats::rms;
 
 use super::pieces::{self, End, MIN_FLANK_POINTS, Piece};
 use super::points::Points;
@@ -33,24 +34,24 @@ pub(super) fn fit(points: &Points, before: &Piece, after: &Piece, options: &Edge
         ];
         point_mm = flanks[0].fit.line.crossing_mm(&flanks[1].fit.line)?;
     }
-    let point_std_mm = pieces::point_std_mm(&flanks, options.profile_std_mm);
-    let covariance = covariance([&flanks[0].fit, &flanks[1].fit], point_mm, point_std_mm)?;
     let [before, after] = &flanks;
+    let stds_mm = [before, after].map(|flank| flank.point_std_mm(options.profile_std_mm));
+    let covariance = covariance([&before.fit, &after.fit], point_mm, stds_mm)?;
     Some(EdgeFit {
         feature: Feature::Corner,
         point_mm,
         covariance,
         flanks: vec![before.flank(points, End::Last), after.flank(points, End::First)],
-        point_std_mm,
+        point_std_mm: rms(stds_mm),
         classes: pieces::classes(points, &flanks),
     })
 }
 
 /// Each line holds its crossing within its own uncertainty across itself: N·p = c with independent errors of c.
-fn covariance(fits: [&LineFit; 2], point_mm: [f64; 2], point_std_mm: f64) -> Option<Matrix2<f64>> {
+fn covariance(fits: [&LineFit; 2], point_mm: [f64; 2], stds_mm: [f64; 2]) -> Option<Matrix2<f64>> {
     let normals = fits.map(|fit| [-fit.line.direction[1], fit.line.direction[0]]);
     let inverse = Matrix2::new(normals[0][0], normals[0][1], normals[1][0], normals[1][1]).try_inverse()?;
-    let variances = fits.map(|fit| fit.variance_factor_at(point_mm) * point_std_mm * point_std_mm);
+    let variances = [0, 1].map(|idx| fits[idx].variance_factor_at(point_mm) * stds_mm[idx] * stds_mm[idx]);
     Some(inverse * Matrix2::from_diagonal(&Vector2::from(variances)) * inverse.transpose())
 }
 

@@ -30,7 +30,7 @@ pub(super) fn fit(
         End::Last => points.order(),
     };
     let point_mm = line.at_x_mm(points.x_mm[last] + outwards * beyond * points.pitch_mm)?;
-    let point_std_mm = pieces::point_std_mm([piece], options.profile_std_mm);
+    let point_std_mm = piece.point_std_mm(options.profile_std_mm);
     // Across the laser line the grid decides, and the point slides along the surface with it; off the surface the fit does.
     let slide = Vector2::new(1.0, line.slope()?);
     let off = Vector2::new(-line.direction[1], line.direction[0]);

@@ -16,7 +16,7 @@ const SPLIT_AFTER: usize = 5;
 const END_POINTS: usize = 4;
 /// … at least so many are on it; a stray that happens to lie in line is no end.
 const END_POINTS_ON_LINE: usize = 2;
-/// Parts of points that say how sure the noise stated in the session is: as much as so many residuals.
+/// The noise that a session states counts as much as so many residuals.
 const STATED_NOISE_WEIGHT: f64 = 10.0;
 
 /// A straight piece.
@@ -40,6 +40,16 @@ impl Piece {
     pub(super) fn length_mm(&self, points: &Points) -> f64 {
         let along = [self.first, self.last].map(|place| self.fit.line.along_mm(points.at(place)));
         (along[1] - along[0]).abs()
+    }
+
+    /// Noise of a point across it, mm: from its residuals, and from what the session states along the range axis.
+    pub(super) fn point_std_mm(&self, stated_mm: Option<f64>) -> f64 {
+        let stated = stated_mm.map(|std_mm| std_mm * self.fit.line.direction[0]);
+        let [cost, weight] =
+            stated.map_or([0.0; 2], |std_mm| [std_mm * std_mm, 1.0]).map(|part| part * STATED_NOISE_WEIGHT);
+        #[expect(clippy::cast_precision_loss, reason = "a profile has far fewer than 2^52 points")]
+        let freedom = self.fit.num_points.saturating_sub(2) as f64;
+        ((cost + self.fit.cost_mm2()) / (weight + freedom).max(1.0)).sqrt()
     }
 
     /// Whether a point is on it.
@@ -129,17 +139,6 @@ fn fit_between(points: &Points, left: &[usize], first: usize, last: usize, start
 pub(super) fn refit(points: &Points, first: usize, last: usize, start: &LineFit) -> Option<LineFit> {
     let (x_mm, z_mm) = (points.x_mm.get(first..=last)?, points.z_mm.get(first..=last)?);
     line::fit_trimmed(x_mm, z_mm, &start.line, 2.0 * points.tolerance_mm)
-}
-
-/// Noise of a point across the pieces, mm: from their residuals, and from what the session states as far as there is that.
-pub(super) fn point_std_mm<'a>(pieces: impl IntoIterator<Item = &'a Piece>, stated_mm: Option<f64>) -> f64 {
-    let stated = stated_mm.map_or([0.0; 2], |std_mm| [std_mm * std_mm * STATED_NOISE_WEIGHT, STATED_NOISE_WEIGHT]);
-    let [cost, freedom] = pieces.into_iter().fold(stated, |[cost, freedom], piece| {
-        #[expect(clippy::cast_precision_loss, reason = "a profile has far fewer than 2^52 points")]
-        let of_piece = piece.fit.num_points.saturating_sub(2) as f64;
-        [cost + piece.fit.cost_mm2(), freedom + of_piece]
-    });
-    (cost / freedom.max(1.0)).sqrt()
 }
 
 /// One class a point of the profile, by the flanks that an edge was found from.

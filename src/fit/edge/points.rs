@@ -4,9 +4,8 @@ use crate::geometry::Profile;
 use crate::geometry::stats::median;
 
 use super::EdgeOptions;
-use crate::fit::robust;
 
-/// Differences looked at for the pitch and the noise.
+/// Differences looked at for the pitch.
 const SAMPLE: usize = 240;
 /// Points within this many standard deviations of a line may be on it.
 const TOLERANCE_STDS: f64 = 4.0;
@@ -45,7 +44,7 @@ impl Points {
             z_mm.push(z);
         }
         let pitch_mm = pitch(profile.x_mm());
-        let noise_mm = options.profile_std_mm.unwrap_or_else(|| robust::local_noise(thinned(&z_mm)));
+        let noise_mm = options.profile_std_mm.unwrap_or_else(|| local_noise(&z_mm));
         let tolerance_mm = (TOLERANCE_STDS * noise_mm).max(TOLERANCE_PITCHES * pitch_mm).max(f64::MIN_POSITIVE);
         let away = range_sign(&z_mm);
         Self { grid, x_mm, z_mm, num_grid, pitch_mm, noise_mm, tolerance_mm, away }
@@ -68,9 +67,18 @@ impl Points {
     }
 }
 
-/// The middle of the profile, where it is too long to look at every difference.
-fn thinned(z_mm: &[f64]) -> &[f64] {
-    z_mm
+/// Noise along the range axis from second differences, to which straight flanks add nothing.
+///
+/// A value below the median of their sizes, as a stray spoils three of them, and a tip has few.
+fn local_noise(z_mm: &[f64]) -> f64 {
+    /// Three eighths of standard normal values are below this size.
+    const SIZE_OF_THREE_EIGHTHS: f64 = 0.488_776;
+    let mut sizes: Vec<f64> = z_mm.windows(3).map(|z| (z[0] - 2.0 * z[1] + z[2]).abs()).collect();
+    if sizes.is_empty() {
+        return 0.0;
+    }
+    let place = sizes.len() * 3 / 8;
+    *sizes.select_nth_unstable_by(place, f64::total_cmp).1 / (SIZE_OF_THREE_EIGHTHS * 6.0_f64.sqrt())
 }
 
 fn pitch(x_mm: &[f64]) -> f64 {

@@ -21,7 +21,7 @@ const TELLING: usize = 3;
 /// A flank of a corner that is steeper than this is a side, whose own end is not the one looked for.
 const SIDE_DEG: f64 = 30.0;
 /// A surface narrower than this part of the profile, with both ends in view, is a pin rather than a plate.
-pub(super) const NARROW_PART: f64 = 0.15;
+const NARROW_PART: f64 = 0.15;
 
 /// A place where the surface does something.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,27 +1,37 @@
 //! A narrow thing that stands out of a profile: where two flanks meet at its top, else its rounded top, else its middle.
 
-use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
+use nalgebra::{Matrix2, Matrix2x3, Vector2};
 
-use crate::fit::{EdgeRefusal, PointClass};
-use crate::geometry::stats::{STD_OVER_MAD, median};
+use crate::fit::{EdgeRefusal, PointClass, algebraic, line, robust};
+use crate::geometry::stats::median;
 
 use super::pieces::{self, Piece};
 use super::points::Points;
-use super::sighting::{NARROW_PART, is_narrow};
+use super::sighting::is_narrow;
 use super::{EdgeFit, EdgeOptions, Feature, Sighting, corner};
 
+/// A thing wider than this part of the profile is no tip.
+const WIDEST_PART: f64 = 0.25;
 /// Fewer points than this are strays.
 pub(super) const MIN_TIP_POINTS: usize = 3;
+/// Strays that hang together by chance have less than one in so many of the points of the thing itself.
+const STRAYS_ONE_IN: usize = 4;
+/// The part of the points between its ends that a thing shows at least.
+const LEAST_DENSITY: f64 = 0.6;
 /// Points of one thing are no further apart along the profile than this.
-const MAX_GAP: usize = 4;
+const MAX_GAP: usize = 8;
 /// A steep side falls by so many pitches from one point to the next.
 const MAX_FALL_PITCHES: f64 = 6.0;
-/// Fewer points than this have no top that a parabola could find.
-const MIN_TOP_POINTS: usize = 6;
-/// A parabola whose residuals are so many times the noise does not fit: its outer points are given up.
-const POOR_FIT: f64 = 1.5;
-/// Points beyond so many standard deviations of a parabola are left out.
-const TRIM_AT_STDS: f64 = 3.0;
+/// Fewer points than this have no top that a circle could find.
+const MIN_TOP_POINTS: usize = 8;
+/// Change of z with x up to which a flat top may be seen aslant; steeper ones are sides.
+const STEEPEST_TOP: f64 = 0.6;
+/// A circle or line whose residuals are so many times the noise does not fit.
+const POOR_FIT: f64 = 3.0;
+/// A top that bulges by less than so many standard deviations may as well be flat.
+const CERTAIN_AT_STDS: f64 = 6.0;
+/// All but one in so many of the points have to be on the top that is found.
+const MOST_OF: usize = 5;
 
 /// Finds the one narrow thing.
 pub(super) fn find(points: &Points, pieces: &[Piece], options: &EdgeOptions) -> Result<EdgeFit, EdgeRefusal> {
@@ -31,13 +41,13 @@ pub(super) fn find(points: &Points, pieces: &[Piece], options: &EdgeOptions) -> 
         .filter(|cluster| is_inside(points, cluster) && is_in_front(points, cluster, &background))
         .collect();
     let (narrow, wide): (Vec<_>, Vec<_>) =
-        standing_out.drain(..).partition(|cluster| width_part(points, cluster) < NARROW_PART);
+        standing_out.drain(..).partition(|cluster| width_part(points, cluster) < WIDEST_PART);
     match (narrow.as_slice(), wide.as_slice()) {
         ([tip], _) => fit(points, pieces, tip, options)
             .ok_or(EdgeRefusal::NoFeature { feature: Some(Feature::Tip), num_points: points.len() }),
         ([], [wide, ..]) => Err(EdgeRefusal::TipTooWide {
             found_mm: width_mm(points, wide),
-            limit_mm: NARROW_PART * points.pitch_mm * to_f64(points.num_grid),
+            limit_mm: WIDEST_PART * points.pitch_mm * to_f64(points.num_grid),
         }),
         ([], []) => Err(EdgeRefusal::NoFeature { feature: Some(Feature::Tip), num_points: points.len() }),
         (several, _) => Err(EdgeRefusal::Ambiguous {
@@ -62,13 +72,31 @@ fn clusters(points: &Points, background: &[&Piece]) -> Vec<Vec<usize>> {
             let fall_mm = MAX_FALL_PITCHES * points.pitch_mm * to_f64(gap) + 2.0 * points.tolerance_mm;
             gap <= MAX_GAP && (points.z_mm[place] - points.z_mm[last]).abs() <= fall_mm
         };
-        match clusters.iter_mut().rev().take(MAX_GAP).find(|cluster| hangs_on(cluster)) {
+        // The one with the most points: a stray may be in line as well.
+        let candidates = clusters.iter_mut().filter(|cluster| hangs_on(cluster));
+        match candidates.max_by_key(|cluster| cluster.len()) {
             Some(cluster) => cluster.push(place),
             None => clusters.push(vec![place]),
         }
     }
-    clusters.retain(|cluster| cluster.len() >= MIN_TIP_POINTS);
-    clusters
+    let is_dense = |cluster: &[usize]| {
+        let width = points.grid[cluster[cluster.len() - 1]] - points.grid[cluster[0]] + 1;
+        to_f64(cluster.len()) >= LEAST_DENSITY * to_f64(width)
+    };
+    clusters.retain(|cluster| cluster.len() >= MIN_TIP_POINTS && is_dense(cluster));
+    clusters.sort_by_key(|cluster| std::cmp::Reverse(cluster.len()));
+    let most = clusters.first().map_or(0, Vec::len);
+    clusters.retain(|cluster| STRAYS_ONE_IN * cluster.len() >= most);
+    // Of what lies behind one another the thing itself has more points than the strays.
+    let mut apart: Vec<Vec<usize>> = Vec::new();
+    for cluster in clusters {
+        let range = |cluster: &[usize]| (cluster[0], cluster[cluster.len() - 1]);
+        let (first, last) = range(&cluster);
+        if apart.iter().all(|other| range(other).1 < first || last < range(other).0) {
+            apart.push(cluster);
+        }
+    }
+    apart
 }
 
 fn width_part(points: &Points, cluster: &[usize]) -> f64 {
@@ -98,113 +126,125 @@ fn is_in_front(points: &Points, cluster: &[usize], background: &[&Piece]) -> boo
 }
 
 fn fit(points: &Points, pieces: &[Piece], cluster: &[usize], options: &EdgeOptions) -> Option<EdgeFit> {
-    flanks_meet(points, pieces, cluster, options)
-        .or_else(|| rounded_top(points, cluster, options))
+    let round = rounded_top(points, cluster, cluster, options);
+    let pointed = flanks_meet(points, pieces, cluster, options);
+    // Chords of a round thing fit it worse than its circle does, and a circle fits a pointed one worse than its flanks do.
+    let better = [round, pointed].into_iter().flatten().min_by(|a, b| a.misfit_mm.total_cmp(&b.misfit_mm));
+    better
+        .map(|found| found.edge)
+        .or_else(|| top_alone(points, cluster, options))
         .or_else(|| middle(points, cluster, options))
 }
 
+/// A shape that was tried.
+struct Shape {
+    edge: EdgeFit,
+    /// Median distance of the points from it, mm.
+    misfit_mm: f64,
+}
+
+impl Shape {
+    fn new(edge: EdgeFit, distances_mm: impl Iterator<Item = f64>) -> Self {
+        Self { edge, misfit_mm: median(&mut distances_mm.map(f64::abs).collect::<Vec<f64>>()) }
+    }
+}
+
 /// A pointed tip: its two flanks are straight.
-fn flanks_meet(points: &Points, pieces: &[Piece], cluster: &[usize], options: &EdgeOptions) -> Option<EdgeFit> {
+fn flanks_meet(points: &Points, pieces: &[Piece], cluster: &[usize], options: &EdgeOptions) -> Option<Shape> {
     let (first, last) = (cluster[0], cluster[cluster.len() - 1]);
-    let inside: Vec<&Piece> = pieces.iter().filter(|piece| first <= piece.first && piece.last <= last).collect();
-    let [before, after] = inside.as_slice() else { return None };
-    let explained = before.fit.num_points + after.fit.num_points;
-    // Chords of a round thing leave many points out.
-    if 10 * explained < 8 * cluster.len() {
+    let is_part = |piece: &&Piece| piece.first <= last && piece.last >= first && is_narrow(points, piece);
+    let parts: Vec<&Piece> = pieces.iter().filter(is_part).collect();
+    let explained: usize = parts.iter().map(|piece| piece.fit.num_points).sum();
+    // Chords of a round thing leave points out, and fit those poorly that they take.
+    if MOST_OF * explained < (MOST_OF - 1) * cluster.len() {
+        return None;
+    }
+    let tops = parts.windows(2).filter_map(|pair| flanks_top(points, pair[0], pair[1], options));
+    // A shaft below its cone makes a corner as well; the tip is the one nearest to the sensor.
+    let range = |edge: &EdgeFit| edge.point_mm[1] * points.away;
+    let found = tops.min_by(|a, b| range(a).total_cmp(&range(b)))?;
+    let distance = |place: &usize| {
+        let distances = parts.iter().map(|piece| piece.fit.line.distance_mm(points.at(*place)).abs());
+        distances.fold(f64::INFINITY, f64::min)
+    };
+    Some(Shape::new(EdgeFit { feature: Feature::Tip, ..found }, cluster.iter().map(distance)))
+}
+
+/// Where two neighbouring flanks meet; `None` where they fit poorly, are in one line within their noise, or meet far away.
+fn flanks_top(points: &Points, before: &Piece, after: &Piece, options: &EdgeOptions) -> Option<EdgeFit> {
+    let flanks = [before, after];
+    if flanks.iter().any(|flank| flank.fit.rms_mm > POOR_FIT * expected_noise(points, options)) {
+        return None;
+    }
+    let angle_rad = before.fit.line.angle_to_rad(&after.fit.line);
+    let variance = |piece: &&Piece| piece.fit.rms_mm.max(points.noise_mm).powi(2) / piece.fit.spread_mm2;
+    if angle_rad < CERTAIN_AT_STDS * flanks.iter().map(variance).sum::<f64>().sqrt() {
         return None;
     }
     let found = corner::fit(points, before, after, options)?;
-    let is_on_it = [before, after].iter().all(|piece| {
+    let is_near = |piece: &Piece| {
         let ends = [piece.first, piece.last].map(|place| points.x_mm[place]);
         let reach = (ends[1] - ends[0]).abs();
         ends.iter().any(|x| (found.point_mm[0] - x).abs() <= reach)
-    });
-    is_on_it.then_some(EdgeFit { feature: Feature::Tip, ..found })
-}
-
-/// z over x − `middle_x_mm` as a parabola.
-struct Parabola {
-    middle_x_mm: f64,
-    factors: Vector3<f64>,
-    /// For points of unit variance.
-    covariance: Matrix3<f64>,
-    std_mm: f64,
-    kept: Vec<usize>,
-}
-
-fn parabola(points: &Points, cluster: &[usize], degree: usize) -> Option<Parabola> {
-    let middle_x_mm = f64::midpoint(points.x_mm[cluster[0]], points.x_mm[cluster[cluster.len() - 1]]);
-    let terms = |place: usize| {
-        let u = points.x_mm[place] - middle_x_mm;
-        Vector3::new(1.0, if degree > 0 { u } else { 0.0 }, if degree > 1 { u * u } else { 0.0 })
     };
-    let mut kept = cluster.to_vec();
-    for round in 0.. {
-        if kept.len() <= degree {
-            return None;
+    (is_near(before) && is_near(after)).then_some(found)
+}
+
+/// A rounded top: the point nearest to the sensor of the circle through the points.
+fn rounded_top(points: &Points, window: &[usize], cluster: &[usize], options: &EdgeOptions) -> Option<Shape> {
+    let (x_mm, z_mm): (Vec<f64>, Vec<f64>) =
+        window.iter().map(|place| (points.x_mm[*place], points.z_mm[*place])).unzip();
+    let (found, kept) = robust::fit_from(&x_mm, &z_mm, algebraic::hyper(&x_mm, &z_mm).ok()?).ok()?;
+    let expected_mm = expected_noise(points, options);
+    if found.rms_mm > POOR_FIT * expected_mm || MOST_OF * kept.x_mm.len() < (MOST_OF - 1) * window.len() {
+        return None;
+    }
+    let circle = found.circle;
+    let point_mm = [circle.x_mm, circle.z_mm - points.away * circle.radius_mm];
+    let ends = [window[0], window[window.len() - 1]].map(|place| points.x_mm[place]);
+    let half_width = (ends[1] - ends[0]).abs() / 2.0;
+    let from_circle = Matrix2x3::new(1.0, 0.0, 0.0, 0.0, 1.0, -points.away);
+    let covariance = from_circle * found.covariance * from_circle.transpose();
+    let is_top = (circle.z_mm - z_mm.iter().sum::<f64>() / to_f64(z_mm.len())) * points.away > 0.0;
+    let is_inside = (point_mm[0] - ends[0]) * (point_mm[0] - ends[1]) < 0.0;
+    // How far the middle stands out over the ends, and its noise for points spread evenly.
+    let sag_mm = half_width * half_width / (2.0 * circle.radius_mm);
+    let sag_std_mm = 3.35 * found.rms_mm.max(expected_mm) / to_f64(window.len()).sqrt();
+    let is_certain = sag_mm > CERTAIN_AT_STDS * sag_std_mm;
+    let on_circle =
+        |place: &usize| circle.distance_mm(points.x_mm[*place], points.z_mm[*place]).abs() <= 3.0 * found.rms_mm;
+    let edge = EdgeFit {
+        feature: Feature::Tip,
+        point_mm,
+        covariance,
+        flanks: Vec::new(),
+        point_std_mm: found.rms_mm,
+        classes: classes(points, cluster, window.iter().copied().filter(on_circle)),
+    };
+    let distances = window.iter().map(|place| circle.distance_mm(points.x_mm[*place], points.z_mm[*place]));
+    (is_top && is_inside && is_certain).then(|| Shape::new(edge, distances))
+}
+
+/// The same where the sides are no part of the round: only the points around the one nearest to the sensor.
+fn top_alone(points: &Points, cluster: &[usize], options: &EdgeOptions) -> Option<EdgeFit> {
+    let mut window = cluster.to_vec();
+    while window.len() >= MIN_TOP_POINTS {
+        let found = rounded_top(points, &window, cluster, options);
+        if found.is_some() {
+            return found.map(|found| found.edge);
         }
-        let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
-        for place in &kept {
-            let terms = terms(*place);
-            matrix += terms * terms.transpose();
-            right += terms * points.z_mm[*place];
-        }
-        for unused in degree + 1..3 {
-            matrix[(unused, unused)] = 1.0;
-        }
-        let covariance = matrix.try_inverse()?;
-        let factors = covariance * right;
-        let residual = |place: usize| points.z_mm[place] - factors.dot(&terms(place));
-        let freedom = kept.len().saturating_sub(degree + 1).max(1);
-        let cost: f64 = kept.iter().map(|place| residual(*place).powi(2)).sum();
-        let std_mm = (cost / to_f64(freedom)).sqrt();
-        if round == 2 {
-            return Some(Parabola { middle_x_mm, factors, covariance, std_mm, kept });
-        }
-        let mut sizes: Vec<f64> = kept.iter().map(|place| residual(*place).abs()).collect();
-        let limit_mm = TRIM_AT_STDS * (STD_OVER_MAD * median(&mut sizes)).max(0.5 * std_mm).max(points.noise_mm);
-        kept.retain(|place| residual(*place).abs() <= limit_mm);
+        let x_mm = top_x_mm(points, &window)?;
+        window = nearest_to(points, &window, x_mm);
     }
     None
 }
 
-/// A rounded top: the vertex of the parabola through the points nearest to the sensor.
-fn rounded_top(points: &Points, cluster: &[usize], options: &EdgeOptions) -> Option<EdgeFit> {
-    let mut window = cluster.to_vec();
-    loop {
-        if window.len() < MIN_TOP_POINTS {
-            return None;
-        }
-        let top = parabola(points, &window, 2)?;
-        let expected_mm = options.profile_std_mm.unwrap_or(points.noise_mm).max(points.tolerance_mm / 8.0);
-        let [_, b, c] = [top.factors[0], top.factors[1], top.factors[2]];
-        // The side towards the sensor is the one where z · away is least.
-        let is_top = c * points.away > 0.0;
-        let vertex = -b / (2.0 * c);
-        if top.std_mm > POOR_FIT * expected_mm {
-            window = nearest_to(points, &window, if is_top { top.middle_x_mm + vertex } else { top.middle_x_mm });
-            continue;
-        }
-        let half_width = (points.x_mm[window[window.len() - 1]] - points.x_mm[window[0]]).abs() / 2.0;
-        let std_mm = top.std_mm.max(options.profile_std_mm.unwrap_or(0.0));
-        let gradient = Vector3::new(0.0, -1.0 / (2.0 * c), b / (2.0 * c * c));
-        let height = Vector3::new(1.0, vertex, vertex * vertex);
-        let across = (gradient.transpose() * top.covariance * gradient)[0] * std_mm * std_mm;
-        // At the vertex the slope is zero, so the height is as good as the line there.
-        let along = (height.transpose() * top.covariance * height)[0] * std_mm * std_mm;
-        let mixed = (gradient.transpose() * top.covariance * height)[0] * std_mm * std_mm;
-        if !is_top || vertex.abs() > half_width || across.sqrt() > half_width / 3.0 {
-            return None;
-        }
-        return Some(EdgeFit {
-            feature: Feature::Tip,
-            point_mm: [top.middle_x_mm + vertex, top.factors.dot(&height)],
-            covariance: Matrix2::new(across, mixed, mixed, along),
-            flanks: Vec::new(),
-            point_std_mm: std_mm,
-            classes: classes(points, cluster, &top.kept),
-        });
-    }
+/// Where the points are nearest to the sensor: the middle of the nearest few, as one of them may be a stray.
+fn top_x_mm(points: &Points, window: &[usize]) -> Option<f64> {
+    let mut by_range = window.to_vec();
+    by_range.sort_by(|a, b| (points.z_mm[*a] * points.away).total_cmp(&(points.z_mm[*b] * points.away)));
+    let mut x_mm: Vec<f64> = by_range.iter().take(MIN_TOP_POINTS - 1).map(|place| points.x_mm[*place]).collect();
+    (!x_mm.is_empty()).then(|| median(&mut x_mm))
 }
 
 /// The three quarters of the points that are nearest to a place.
@@ -217,33 +257,52 @@ fn nearest_to(points: &Points, window: &[usize], x_mm: f64) -> Vec<usize> {
     by_distance
 }
 
+/// Noise below which a fit cannot be blamed, mm.
+fn expected_noise(points: &Points, options: &EdgeOptions) -> f64 {
+    options.profile_std_mm.unwrap_or(points.noise_mm).max(points.tolerance_mm / 8.0)
+}
+
 /// Too narrow or too flat for a top of its own: halfway between its ends, which the pitch leaves uncertain.
 fn middle(points: &Points, cluster: &[usize], options: &EdgeOptions) -> Option<EdgeFit> {
-    let straight = parabola(points, cluster, 1)?;
-    let slope = straight.factors[1];
-    let std_mm = straight.std_mm.max(options.profile_std_mm.unwrap_or(points.noise_mm));
-    // Each end is uniform within a pitch; the middle is the mean of the two.
-    let across = points.pitch_mm * points.pitch_mm / 24.0;
+    let (x_mm, z_mm): (Vec<f64>, Vec<f64>) =
+        cluster.iter().map(|place| (points.x_mm[*place], points.z_mm[*place])).unzip();
+    let start = line::search(&x_mm, &z_mm, points.tolerance_mm)?;
+    let straight = line::fit_trimmed(&x_mm, &z_mm, &start, 2.0 * points.tolerance_mm)?;
+    let on_line = |place: &usize| straight.line.distance_mm(points.at(*place)).abs() <= straight.limit_mm;
+    let seen: Vec<usize> = cluster.iter().copied().filter(on_line).collect();
+    let slope = straight.line.slope()?;
+    // One side of a pointed tip whose other side is missing has no middle.
+    if slope.abs() > STEEPEST_TOP || to_f64(seen.len()) < LEAST_DENSITY * to_f64(cluster.len()) {
+        return None;
+    }
+    let (first, last) = (*seen.first()?, *seen.last()?);
+    let middle_x_mm = f64::midpoint(points.x_mm[first], points.x_mm[last]);
+    let point_mm = straight.line.at_x_mm(middle_x_mm)?;
+    let std_mm = straight.rms_mm.max(options.profile_std_mm.unwrap_or(points.noise_mm));
+    // Each end is uniform within a pitch, or further out if its last points were missed, as others on it were; the middle is
+    // the mean of the two.
+    let seen_part = to_f64(seen.len()) / to_f64(points.grid[last] - points.grid[first] + 1);
+    let of_end = 1.0 / 12.0 + (1.0 - seen_part) / (seen_part * seen_part);
+    let across = points.pitch_mm * points.pitch_mm * of_end / 2.0;
     let slide = Vector2::new(1.0, slope);
-    let off = straight.covariance[(0, 0)] * std_mm * std_mm;
-    let covariance = slide * slide.transpose() * across + Matrix2::new(0.0, 0.0, 0.0, off);
+    let off = straight.variance_factor_at(point_mm) * std_mm * std_mm;
     Some(EdgeFit {
         feature: Feature::Tip,
-        point_mm: [straight.middle_x_mm, straight.factors[0]],
-        covariance,
+        point_mm,
+        covariance: slide * slide.transpose() * across + Matrix2::new(0.0, 0.0, 0.0, off),
         flanks: Vec::new(),
         point_std_mm: std_mm,
-        classes: classes(points, cluster, &straight.kept),
+        classes: classes(points, cluster, cluster.iter().copied().filter(on_line)),
     })
 }
 
-fn classes(points: &Points, cluster: &[usize], kept: &[usize]) -> Vec<PointClass> {
+fn classes(points: &Points, cluster: &[usize], kept: impl Iterator<Item = usize>) -> Vec<PointClass> {
     let mut classes = pieces::classes(points, []);
     for place in cluster {
         classes[points.grid[*place]] = PointClass::Outlier;
     }
     for place in kept {
-        classes[points.grid[*place]] = PointClass::Inlier;
+        classes[points.grid[place]] = PointClass::Inlier;
     }
     classes
 }

@@ -6,7 +6,7 @@ use std::collections::hash_map::Entry;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::sync::Arc;
 
-use crate::calibrate::SideChoice;
+use crate::calibrate::{Edge, SideChoice};
 use crate::geometry::notation::NotAPose;
 use crate::geometry::{Base, Flange, PoseNotation, Profile, Tcp, Transform, Vec3};
 use crate::session::edit::written_angles;
@@ -34,6 +34,8 @@ pub(super) struct RawPose<'t> {
     pub point_in_sensor: Option<Vec3>,
     /// The side of the ball's centre.
     pub side: SideChoice,
+    /// The edge of the plate that it saw.
+    pub edge: Option<Edge>,
     /// Whether the station is left out for now.
     pub is_disabled: bool,
     /// Commanded step, mm.
@@ -240,7 +242,7 @@ impl Gathered {
                 label,
                 enabled: !raw.is_disabled,
                 side: raw.side,
-                edge: None,
+                edge: raw.edge,
                 captures: vec![capture],
                 unknown: serde_json::Map::new(),
             });

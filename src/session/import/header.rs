@@ -93,6 +93,7 @@ fn words(name: &str) -> Vec<Word> {
         "label" | "name" | "no" | "nr" | "num" | "number" | "id" | "station" | "point" | "index" | "idx" | "#"
         | "序号" | "编号" | "名称" | "pose" | "posename" => Some(Role::Label),
         "side" => Some(Role::Side),
+        "edge" => Some(Role::Edge),
         "use" | "used" | "enabled" | "enable" | "active" => Some(Role::Used),
         "step" => Some(Role::Step),
         "profile" | "file" | "filename" | "scan" | "profilefile" => Some(Role::Profile),
@@ -211,6 +212,7 @@ mod tests {
                 Some(Role::Orientation(idx)) => format!("o{idx}"),
                 Some(Role::Point(idx)) => format!("p{idx}"),
                 Some(Role::Side) => "S".to_owned(),
+                Some(Role::Edge) => "E".to_owned(),
                 Some(Role::Used) => "U".to_owned(),
                 Some(Role::Step) => "T".to_owned(),
                 Some(Role::Profile) => "F".to_owned(),
@@ -243,6 +245,7 @@ mod tests {
         check("X,Y,Z,A (°),B,C,use,side", "t0t1t2o0o1o2US", "? ° angles kuka-abc");
         check("pos_x,pos_y,pos_z,roll (rad),pitch (rad),yaw (rad)", "t0t1t2o0o1o2", "? rad angles fanuc-wpr");
         check("x,y,z,yaw,pitch,roll", "t0t1t2o2o1o0", "? ? angles fanuc-wpr");
+        check("label,edge,x,y,z,w,p,r", "LEt0t1t2o0o1o2", "? ? angles fanuc-wpr");
         check("x,y,z,w,p,r,px,py,pz,file", "t0t1t2o0o1o2p0p1p2F", "? ? angles fanuc-wpr");
         check("px,py,pz,qw,qx,qy,qz", "t0t1t2o0o1o2o3", "? ? wxyz ?");
         check(

@@ -91,6 +91,8 @@ pub enum Role {
     Point(usize),
     /// Side of the ball's centre.
     Side,
+    /// Edge of the plate that the station saw.
+    Edge,
     /// Whether the station takes part.
     Used,
     /// Commanded step, mm.

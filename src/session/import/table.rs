@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::calibrate::{Side, SideChoice};
+use crate::calibrate::{Edge, Side, SideChoice};
 use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm, QUATERNION_NORM_TOLERANCE};
 use crate::geometry::{PoseNotation, Vec3};
 use crate::sheet::layout::{Layout, MAX_COLUMNS, is_comment, is_rule};
@@ -182,6 +182,7 @@ struct Places {
     point: [Option<usize>; 3],
     label: Option<usize>,
     side: Option<usize>,
+    edge: Option<usize>,
     used: Option<usize>,
     step: Option<usize>,
     profile: Option<usize>,
@@ -200,6 +201,7 @@ impl Places {
             point: [0, 1, 2].map(|idx| at(Role::Point(idx))),
             label: at(Role::Label),
             side: at(Role::Side),
+            edge: at(Role::Edge),
             used: at(Role::Used),
             step: at(Role::Step),
             profile: at(Role::Profile),
@@ -314,6 +316,15 @@ fn row<'t>(
             _ => return Err((places.side.unwrap_or_default(), "a side: auto, + or -")),
         },
     };
+    let edge = match text(places.edge) {
+        None => None,
+        Some(edge) if is_missing(edge) => None,
+        Some(edge) => match edge.to_lowercase().as_str() {
+            "p" => Some(Edge::P),
+            "q" => Some(Edge::Q),
+            _ => return Err((places.edge.unwrap_or_default(), "an edge of the plate: p or q")),
+        },
+    };
     let is_disabled = match text(places.used) {
         None => false,
         Some(used) => match used.to_lowercase().as_str() {
@@ -330,6 +341,7 @@ fn row<'t>(
         label: text(places.label).map(unescaped),
         point_in_sensor: point(cells, places, number_at)?,
         side,
+        edge,
         is_disabled,
         step_mm,
         profile: text(places.profile),

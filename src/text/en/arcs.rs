@@ -1,6 +1,7 @@
 //! The arcs panel.
 
 use crate::fit::CircleMethod;
+use crate::session::Target;
 
 /// Title of the list.
 pub const STATIONS: &str = "Stations";
@@ -18,6 +19,8 @@ pub const RMS_HINT: &str = "root mean square distance of the inliers from the ci
 pub const FIT: &str = "Fit";
 /// Before the step buttons.
 pub const STEP: &str = "step";
+/// The same where the profiles of a station are no steps.
+pub const PROFILE: &str = "profile";
 /// Name of the button to the step before.
 pub const PREVIOUS_STEP: &str = "Previous step";
 /// Name of the button to the next step.
@@ -27,7 +30,16 @@ pub const TRUE_SCALE: &str = "true scale";
 /// Toggle: the view holds all points of the profile.
 pub const WHOLE_PROFILE: &str = "whole profile";
 /// The same, on hover.
-pub const WHOLE_PROFILE_HINT: &str = "Show all points, also those that are not of the ball";
+#[must_use]
+pub const fn whole_profile_hint(target: &Target) -> &'static str {
+    match target {
+        Target::Ball { .. } => "Show all points, also those that are not of the ball",
+        _ => "Show all points of the profile",
+    }
+}
+
+/// Of the toggle that shows an edge, a corner, a step or a tip.
+pub const EDGE_ONLY_HINT: &str = "Show the point that was found and what is around it";
 /// Toggle: the view holds the arc.
 pub const ARC_ONLY: &str = "arc";
 /// The same, on hover.
@@ -64,7 +76,7 @@ pub const RULE_AND_CURVE: &str = "Published rule and whole curve";
 /// A sweep that does not reach the largest arc.
 pub const PEAK_NOT_COVERED: &str = "The sweep ends before the largest arc.";
 /// Nothing was measured in a profile yet.
-pub const NOT_MEASURED: &str = "Not measured yet: the arcs are being looked for.";
+pub const NOT_MEASURED: &str = "Not measured yet: the profiles are being looked through.";
 /// In place of the curve for a station with one profile.
 pub const NO_SWEEP: &str = "One profile here: record a sweep to see the radius against the step.";
 /// In place of the curve where there are several profiles but no method evaluated them.
@@ -72,8 +84,68 @@ pub const SWEEP_NOT_EVALUATED: &str = "No largest-arc method evaluated this stat
 /// In place of the curve of a station that does not take part.
 pub const STATION_LEFT_OUT: &str = "This station is left out: tick it in Compare or Poses to see its curve.";
 /// In place of the profile where there is none.
-pub const POINT_READING: &str =
-    "This station holds a ball centre that was already reduced elsewhere; there is no profile to look at.";
+#[must_use]
+pub const fn point_reading(target: &Target) -> &'static str {
+    match target {
+        Target::RightAnglePlate => {
+            "This station holds a point on an edge that was already reduced elsewhere; there is no profile to look at."
+        }
+        Target::Point => "This station holds a tip that was already reduced elsewhere; there is no profile to look at.",
+        _ => "This station holds a ball centre that was already reduced elsewhere; there is no profile to look at.",
+    }
+}
+
+/// Head of the column of edges.
+pub const EDGE: &str = "edge";
+/// What it says, on hover.
+pub const EDGE_HINT: &str = "the plate's edge that the laser line crosses at this station";
+/// Head of a coordinate of the point found.
+pub const POINT_X: &str = "x / mm";
+/// The other one.
+pub const POINT_Z: &str = "z / mm";
+/// What they say, on hover.
+pub const POINT_HINT: &str = "where the laser line crosses the edge, in the laser plane; of the first usable profile";
+/// The same for a tip.
+pub const TIP_HINT: &str = "where the tip is in the laser plane; of the first usable profile";
+/// Title of the card with all points.
+pub const IN_LASER_PLANE: &str = "All points in the laser plane";
+/// What the card is good for, on its right.
+pub const SPREAD_HINT: &str = "the wider, the better";
+/// The same, on hover.
+pub const SPREAD_HINT_LONG: &str = "The calibration knows the sensor's plane from where the points lie in it: points near one place leave it unsure elsewhere";
+/// In place of that card.
+pub const NO_POINTS: &str = "No profile has given a point yet; the list says why.";
+
+/// Legend of an edge's points.
+#[must_use]
+pub fn points_of_edge(edge: &str, count: usize) -> String {
+    format!("edge {edge} {count}")
+}
+
+/// Legend of tips.
+#[must_use]
+pub fn tips(count: usize) -> String {
+    format!("tip {count}")
+}
+
+/// Readout of a point in the laser plane.
+#[must_use]
+pub fn spread_readout(label: &str, x_mm: &str, z_mm: &str) -> String {
+    format!("station {label}\nx {x_mm}  z {z_mm} mm")
+}
+
+/// Legend of the fitted lines.
+#[must_use]
+pub const fn flanks(count: usize) -> &'static str {
+    if count == 1 { "flank" } else { "flanks" }
+}
+
+/// What was found in a profile.
+#[must_use]
+pub fn edge_found(feature: &str, x_mm: &str, z_mm: &str) -> String {
+    format!("{feature} at x {x_mm}, z {z_mm} mm")
+}
+
 /// In place of the panel without a session.
 pub const NO_SESSION: &str = "Open a session, or one of the samples, to see its profiles.";
 /// In place of the panel for a session without stations.
@@ -171,7 +243,7 @@ pub fn rule_and_curve(stop_std_mm: &str, num_steps: usize, peak_std_mm: &str) ->
 /// Refused profiles of a station.
 #[must_use]
 pub fn refused_captures(num_refused: usize, num_captures: usize) -> String {
-    format!("{num_refused} of {num_captures} profiles hold no usable arc.")
+    format!("{num_refused} of {num_captures} profiles hold nothing usable.")
 }
 
 /// Label of the section's centre, in two lines so that it has room inside the circle.
@@ -212,6 +284,11 @@ pub fn expand(label: &str) -> String {
 
 /// A reading that is already a point.
 #[must_use]
-pub fn point_coordinates(x: &str, y: &str, z: &str) -> String {
-    format!("ball in sensor: ({x}, {y}, {z}) mm")
+pub fn point_coordinates(target: &Target, x: &str, y: &str, z: &str) -> String {
+    let name = match target {
+        Target::RightAnglePlate => "point",
+        Target::Point => "tip",
+        _ => "ball",
+    };
+    format!("{name} in sensor: ({x}, {y}, {z}) mm")
 }

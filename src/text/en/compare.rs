@@ -1,6 +1,7 @@
 //! The comparison panel.
 
-use crate::calibrate::{Solution, VerdictReason};
+use crate::calibrate::{Method, Solution, VerdictReason};
+use crate::session::Target;
 
 use super::{methods, warnings};
 
@@ -30,8 +31,20 @@ pub const PAPER_LAYOUT: &str = "paper layout";
 pub const MATRICES: &str = "matrices";
 /// Head of the first column.
 pub const STATION: &str = "station";
-/// Head over the ball's coordinates.
-pub const BALL_IN_BASE: &str = "ball in base / mm";
+/// Head over the coordinates of a method's target in the base.
+#[must_use]
+pub const fn in_base(method: Method) -> &'static str {
+    match method {
+        Method::PlateOrthogonal | Method::PlateBundle => "point in base / mm",
+        Method::FixedPoint => "tip in base / mm",
+        Method::BallFixedPoint | Method::BallMaxArcStep | Method::BallMaxArc | Method::BallBundle => {
+            "ball in base / mm"
+        }
+    }
+}
+
+/// Head over distances from an edge.
+pub const OFF_EDGE: &str = "off edge / mm";
 /// Head over the errors from the first station used.
 #[must_use]
 pub fn error_from_first(label: &str) -> String {
@@ -48,8 +61,18 @@ pub const NUMBER: &str = "no.";
 pub const TRANSLATION: &str = "translation / mm";
 /// Paper layout: rotation.
 pub const QUATERNION: &str = "quaternion";
-/// Paper layout: ball in the sensor frame.
-pub const BALL_IN_SENSOR: &str = "ball in sensor / mm";
+/// Paper layout: the target in the sensor frame.
+#[must_use]
+pub const fn in_sensor(method: Method) -> &'static str {
+    match method {
+        Method::PlateOrthogonal | Method::PlateBundle => "point in sensor / mm",
+        Method::FixedPoint => "tip in sensor / mm",
+        Method::BallFixedPoint | Method::BallMaxArcStep | Method::BallMaxArc | Method::BallBundle => {
+            "ball in sensor / mm"
+        }
+    }
+}
+
 /// Paper layout: error.
 pub const ERROR: &str = "error / mm";
 /// Legend of the tints.
@@ -61,24 +84,52 @@ pub const LEFT_OUT: &str = "left out";
 /// A station that takes part, but which this method could not use.
 pub const NOT_USED: &str = "not used by this method";
 /// Title of the bars.
-pub const ERROR_PER_STATION: &str = "Error per station";
+#[must_use]
+pub const fn error_per_station(target: &Target) -> &'static str {
+    match target {
+        Target::RightAnglePlate => "Off edge per point",
+        _ => "Error per station",
+    }
+}
+
 /// Bars show left-out errors.
 pub const BARS_LEFT_OUT: &str = "left out";
 /// What left-out errors are.
 pub const BARS_LEFT_OUT_HINT: &str =
-    "Each station's ball against the calibration made without that station: what a new station would see";
+    "Each station against the calibration made without it: what a new station would see";
 /// Bars show in-sample errors.
 pub const BARS_IN_SAMPLE: &str = "in sample";
 /// What in-sample errors are.
-pub const BARS_IN_SAMPLE_HINT: &str = "Each station's ball as in the tables above";
+pub const BARS_IN_SAMPLE_HINT: &str = "As in the tables above";
 /// Axis title.
 pub const STATION_AXIS: &str = "station";
 /// Axis title.
 pub const ERROR_AXIS: &str = "error / mm";
 /// Title of the scatter plots.
-pub const BALL_CENTRES: &str = "Ball centres, 1σ";
+#[must_use]
+pub const fn scatter_title(target: &Target) -> &'static str {
+    match target {
+        Target::RightAnglePlate => "Points about their edges, 1σ",
+        Target::Point => "Tips, 1σ",
+        _ => "Ball centres, 1σ",
+    }
+}
+
 /// On the right of the scatter plots.
-pub const ABOUT_THEIR_MEAN: &str = "about their mean, base frame";
+#[must_use]
+pub const fn scatter_hint(target: &Target) -> &'static str {
+    match target {
+        Target::RightAnglePlate => "seen along the edges, plate frame",
+        _ => "about their mean, base frame",
+    }
+}
+
+/// Axis title: across edge p, in the plate's plane.
+pub const ACROSS_P_AXIS: &str = "p: in the plate / mm";
+/// Axis title: across edge q, in the plate's plane.
+pub const ACROSS_Q_AXIS: &str = "q: in the plate / mm";
+/// Axis title: along the plate's normal.
+pub const OFF_PLATE_AXIS: &str = "off the plate / mm";
 /// Axis title.
 pub const X_AXIS: &str = "x / mm";
 /// Axis title.
@@ -127,8 +178,13 @@ pub fn headline(distance_mm: &str) -> String {
 
 /// The same where the session states no distance.
 #[must_use]
-pub fn headline_amid_balls(z_mm: &str) -> String {
-    format!("a point amid the balls seen, z = {z_mm} mm:")
+pub fn headline_amid_seen(method: Method, z_mm: &str) -> String {
+    let seen = match method {
+        Method::PlateOrthogonal | Method::PlateBundle => "points",
+        Method::FixedPoint => "tips",
+        Method::BallFixedPoint | Method::BallMaxArcStep | Method::BallMaxArc | Method::BallBundle => "balls",
+    };
+    format!("a point amid the {seen} seen, z = {z_mm} mm:")
 }
 
 /// The method behind the verdict; `is_continued` by the headline.
@@ -151,8 +207,9 @@ pub fn verdict_of(method: &str) -> String {
 
 /// Beginning of the comparison.
 #[must_use]
-pub fn maximum_error(method: &str) -> String {
-    format!("{method}: max error")
+pub fn maximum_error(method: Method) -> String {
+    let figure = if Method::PLATE.contains(&method) { "largest distance" } else { "max error" };
+    format!("{}: {figure}", methods::method_short_name(method))
 }
 
 /// End of the comparison.
@@ -167,8 +224,15 @@ pub fn no_better_than(baseline: &str, error_mm: &str) -> String {
     format!("no better than {baseline} ({error_mm} mm)")
 }
 
-/// What "max error" means.
-pub const MAXIMUM_ERROR_HINT: &str = "As in the paper: the largest coordinate of any station's ball relative to the first station's. A small value alone proves little; see the left-out error";
+/// What the comparison's figure means.
+#[must_use]
+pub fn maximum_error_hint(method: Method) -> &'static str {
+    if Method::PLATE.contains(&method) { LARGEST_DISTANCE_HINT } else { MAXIMUM_ERROR_HINT }
+}
+
+const LARGEST_DISTANCE_HINT: &str = "The largest distance of a point from the line of its edge, in the base. A small value alone proves little; see the left-out error";
+
+const MAXIMUM_ERROR_HINT: &str = "As in the paper: the largest coordinate of any station's ball relative to the first station's. A small value alone proves little; see the left-out error";
 
 /// Figures at the right of a method's head.
 #[must_use]
@@ -179,7 +243,14 @@ pub fn method_figures(max_mm: &str, left_out_mm: Option<&str>, std_mm: Option<&s
 }
 
 /// What the figures in a method's head mean.
-pub const METHOD_FIGURES_HINT: &str = "max: largest coordinate of the errors shown\nleft out: RMS over stations, each predicted by the others\nσ: standard deviation of a point in the workspace";
+#[must_use]
+pub const fn method_figures_hint(is_of_plate: bool) -> &'static str {
+    if is_of_plate { PLATE_FIGURES_HINT } else { METHOD_FIGURES_HINT }
+}
+
+const PLATE_FIGURES_HINT: &str = "max: largest distance of a point from its edge\nleft out: RMS distance, each station's points from the edges found without it\nσ: standard deviation of a point in the workspace";
+
+const METHOD_FIGURES_HINT: &str = "max: largest coordinate of the errors shown\nleft out: RMS over stations, each predicted by the others\nσ: standard deviation of a point in the workspace";
 
 /// Name of a station's tick box.
 #[must_use]

@@ -258,6 +258,7 @@ pub fn role(role: Role, notation: &PoseNotation, point_unit: LengthUnit) -> Stri
         Role::Orientation(idx) => orientation_number(idx, notation),
         Role::Point(idx) => format!("point {} / {}", axis(idx), point_unit.symbol()),
         Role::Side => "side".to_owned(),
+        Role::Edge => "edge".to_owned(),
         Role::Used => "used".to_owned(),
         Role::Step => "step / mm".to_owned(),
         Role::Profile => "profile".to_owned(),

@@ -34,6 +34,15 @@ pub fn part_line(part: &Part) -> String {
     format!("{}: {}{gave}\n", part.name, kind_name(part.kind))
 }
 
+/// Stations of a plate of which nobody has said which edge they saw.
+#[must_use]
+pub fn edges_missing_line(num_stations: usize) -> String {
+    let stations = count(num_stations, "station");
+    format!(
+        "edge: found {stations} without one, which take no part until it is set; add a column edge with p or q, or set it in Poses\n"
+    )
+}
+
 /// How the poses were read.
 #[must_use]
 pub fn options_line(options: &ImportOptions) -> String {

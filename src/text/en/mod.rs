@@ -11,6 +11,7 @@ pub mod conventions;
 pub mod diagnosis;
 pub mod diagnosis_panel;
 pub mod document;
+pub mod edges;
 pub mod edits;
 pub mod import;
 pub mod import_cli;

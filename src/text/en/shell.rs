@@ -1,6 +1,7 @@
 //! Wording of the window's frame: menus, rail, inspector, status line, dialogs.
 
-use crate::calibrate::Mount;
+use crate::calibrate::{Method, Mount};
+use crate::session::Target;
 
 /// The program's name.
 pub const PROGRAM: &str = "Handeye";
@@ -197,9 +198,50 @@ pub const LARGEST_ARC_AT: &str = "largest arc at y";
 /// Row of the inspector.
 pub const LEFT_OUT: &str = "left out";
 /// What the row means.
-pub const LEFT_OUT_HINT: &str = "Distance between this station's ball and the ball found without it";
+#[must_use]
+pub fn left_out_hint(method: Method) -> &'static str {
+    if method == Method::FixedPoint {
+        "Distance between this station's tip and the tip found without it"
+    } else {
+        "Distance between this station's ball and the ball found without it"
+    }
+}
+
 /// Row of the inspector for a reduced point.
-pub const BALL_IN_SENSOR: &str = "ball in sensor";
+#[must_use]
+pub const fn target_in_sensor(target: &Target) -> &'static str {
+    match target {
+        Target::RightAnglePlate => "point in sensor",
+        Target::Point => "tip in sensor",
+        _ => "ball in sensor",
+    }
+}
+
+/// Row of the inspector: what was found in a profile of a plate or tip.
+pub const FOUND: &str = "found";
+/// Row of the inspector.
+pub const POINT_X: &str = "x";
+/// Row of the inspector.
+pub const POINT_Z: &str = "z";
+/// Row of the inspector.
+pub const POINTS_USED: &str = "points used";
+/// Row of the inspector.
+pub const POINT_NOISE: &str = "noise of a point";
+/// Row of the inspector.
+pub const PLATE_EDGE: &str = "edge of the plate";
+/// Row of the inspector.
+pub const OFF_EDGE: &str = "off its edge";
+/// What the row means.
+pub const OFF_EDGE_HINT: &str = "Distance of this point from the line of its edge, in the base";
+/// The same for the left-out error.
+pub const OFF_EDGE_LEFT_OUT_HINT: &str = "Distance of this point from its edge as found without this station";
+
+/// Points of a profile that a point rests on.
+#[must_use]
+pub fn points_used(num_used: usize, num_points: usize) -> String {
+    format!("{num_used} of {num_points}")
+}
+
 /// What the side's ratio means.
 pub const SIDE_HINT: &str =
     "The side of the laser plane on which the ball's centre lies; the other side costs that many times as much";

@@ -53,6 +53,16 @@ pub fn sample_lesson(file_name: &str) -> (&'static str, &'static str) {
             ("Near the largest arc", "Single sections next to the largest arc: y is all but unknown")
         }
         "one-bad-pose.json" => ("One bad pose", "One pose is wrong by 2 mm: leaving each station out in turn finds it"),
+        "plate.json" => ("Right-angle plate", "No ball at hand: points on two edges at a right angle are enough"),
+        "tip.json" => {
+            ("Touched tip", "A pin's point met from all sides, and touched: the simplest target, and a judge")
+        }
+        "workpiece.json" => {
+            ("Scanned workpieces", "A square block and teeth: measured sizes show what a calibration is worth")
+        }
+        "three-targets.json" => {
+            ("Three targets", "Ball, plate and tip of one sensor: calibrate on one, verify on the others")
+        }
         _ => ("Sample", "A sample session"),
     }
 }

@@ -5,9 +5,21 @@ use std::collections::BTreeSet;
 use egui::{Align2, Color32, FontId, Id, Rect, Role, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
 
 use crate::text::arcs as text;
+use crate::text::edges::edge_name;
 use crate::ui::{Selection, theme, widgets};
 
 use super::model::{CaptureRow, StationRow};
+
+/// What the columns show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Columns {
+    /// Steps, section radius and RMS, of a ball.
+    Arcs,
+    /// Edge, and where the point is in the laser plane; of a plate.
+    EdgePoints,
+    /// The same without edges, of a tip.
+    Tips,
+}
 
 /// What the list tells the panel.
 #[derive(Clone, Copy, Debug, Default)]
@@ -27,18 +39,22 @@ const STEPS_RIGHT: f32 = 0.40;
 const RADIUS_RIGHT: f32 = 0.68;
 const RMS_RIGHT: f32 = 0.87;
 const STATUS_CENTRE: f32 = 0.94;
+const EDGE_RIGHT: f32 = 0.33;
+const X_RIGHT: f32 = 0.58;
+const Z_RIGHT: f32 = 0.87;
 
 /// Shows the list; `reveal` scrolls to the selected row.
 pub fn show(
     ui: &mut Ui,
     rows: &[StationRow],
+    columns: Columns,
     expanded: &mut BTreeSet<usize>,
     selection: &mut Selection,
     reveal: bool,
     from_top: &mut widgets::FromTop,
 ) -> ListResponse {
     ui.spacing_mut().item_spacing.y = 0.0;
-    head(ui);
+    head(ui, columns);
     let mut lines = Vec::new();
     for (station_idx, row) in rows.iter().enumerate() {
         lines.push(Line::Station(station_idx));
@@ -56,11 +72,11 @@ pub fn show(
         for line in &lines[range] {
             match *line {
                 Line::Station(station_idx) => {
-                    station_line(ui, station_idx, &rows[station_idx], expanded, selection);
+                    station_line(ui, station_idx, &rows[station_idx], columns, expanded, selection);
                 }
                 Line::Capture(station_idx, capture_idx) => {
                     let row = &rows[station_idx];
-                    if capture_line(ui, station_idx, capture_idx, row, selection) {
+                    if capture_line(ui, station_idx, capture_idx, row, columns, selection) {
                         response.hovered_capture = Some(capture_idx);
                     }
                 }
@@ -88,14 +104,24 @@ fn scroll_to(ui: &Ui, line_idx: usize, first_idx: usize) {
     ui.scroll_to_rect(row, None);
 }
 
-fn head(ui: &mut Ui) {
+fn head(ui: &mut Ui, columns: Columns) {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), theme::ROW_HEIGHT), Sense::hover());
     let palette = theme::palette(ui);
-    let columns = [
-        (STEPS_RIGHT, text::STEPS, ""),
-        (RADIUS_RIGHT, text::SECTION_RADIUS, text::SECTION_RADIUS_HINT),
-        (RMS_RIGHT, text::RMS, text::RMS_HINT),
-    ];
+    let columns = match columns {
+        Columns::Arcs => [
+            (STEPS_RIGHT, text::STEPS, ""),
+            (RADIUS_RIGHT, text::SECTION_RADIUS, text::SECTION_RADIUS_HINT),
+            (RMS_RIGHT, text::RMS, text::RMS_HINT),
+        ],
+        Columns::EdgePoints => [
+            (EDGE_RIGHT, text::EDGE, text::EDGE_HINT),
+            (X_RIGHT, text::POINT_X, text::POINT_HINT),
+            (Z_RIGHT, text::POINT_Z, text::POINT_HINT),
+        ],
+        Columns::Tips => {
+            [(EDGE_RIGHT, "", ""), (X_RIGHT, text::POINT_X, text::TIP_HINT), (Z_RIGHT, text::POINT_Z, text::TIP_HINT)]
+        }
+    };
     let mut left = rect.left();
     for (right, name, hint) in columns {
         let right = rect.left() + right * rect.width();
@@ -111,9 +137,8 @@ fn head(ui: &mut Ui) {
 }
 
 struct Figures<'a> {
-    steps: String,
-    radius_mm: Option<f64>,
-    rms_mm: Option<f64>,
+    /// Their right edges and what stands there.
+    cells: [(f32, String); 3],
     problem: Option<&'a str>,
     is_enabled: bool,
 }
@@ -125,9 +150,9 @@ fn figures(ui: &Ui, rect: Rect, row: &Figures<'_>) {
         let at = pos2(rect.left() + right * rect.width(), rect.center().y);
         ui.painter().text(at, Align2::RIGHT_CENTER, text, theme::number_font(), color);
     };
-    number(STEPS_RIGHT, &row.steps);
-    number(RADIUS_RIGHT, &row.radius_mm.map_or_else(|| "–".to_owned(), |radius| widgets::fixed(radius, 2)));
-    number(RMS_RIGHT, &row.rms_mm.map_or_else(|| "–".to_owned(), |rms| widgets::fixed(rms * 1000.0, 1)));
+    for (right, words) in &row.cells {
+        number(*right, words);
+    }
     let (mark, mark_color): (&str, Color32) = match (row.is_enabled, row.problem) {
         (false, _) => ("–", palette.text_dim),
         (true, Some(_)) => ("!", palette.warn),
@@ -136,6 +161,23 @@ fn figures(ui: &Ui, rect: Rect, row: &Figures<'_>) {
     let at = pos2(rect.left() + STATUS_CENTRE * rect.width(), rect.center().y);
     ui.painter().text(at, Align2::CENTER_CENTER, mark, FontId::proportional(theme::BODY_SIZE), mark_color);
     ui.painter().hline(rect.x_range(), rect.bottom(), egui::Stroke::new(1.0, palette.hairline));
+}
+
+fn arc_cells(steps: String, radius_mm: Option<f64>, rms_mm: Option<f64>) -> [(f32, String); 3] {
+    [
+        (STEPS_RIGHT, steps),
+        (RADIUS_RIGHT, figure(radius_mm, 2)),
+        (RMS_RIGHT, figure(rms_mm.map(|rms_mm| rms_mm * 1000.0), 1)),
+    ]
+}
+
+fn point_cells(first: String, point_mm: Option<[f64; 2]>) -> [(f32, String); 3] {
+    let [x, z] = [0, 1].map(|axis| figure(point_mm.map(|point| point[axis]), 2));
+    [(EDGE_RIGHT, first), (X_RIGHT, x), (Z_RIGHT, z)]
+}
+
+fn figure(value: Option<f64>, decimals: usize) -> String {
+    value.map_or_else(|| "–".to_owned(), |value| widgets::fixed(value, decimals))
 }
 
 fn line(ui: &mut Ui, is_selected: bool, is_enabled: bool, name: &str, problem: Option<&str>) -> egui::Response {
@@ -162,6 +204,7 @@ fn station_line(
     ui: &mut Ui,
     station_idx: usize,
     row: &StationRow,
+    columns: Columns,
     expanded: &mut BTreeSet<usize>,
     selection: &mut Selection,
 ) {
@@ -172,16 +215,21 @@ fn station_line(
         ui,
         rect,
         &Figures {
-            steps: row.captures.len().to_string(),
-            radius_mm: row.section_radius_mm,
-            rms_mm: row.rms_mm,
+            cells: match columns {
+                Columns::Arcs => arc_cells(row.captures.len().to_string(), row.section_radius_mm, row.rms_mm),
+                Columns::EdgePoints | Columns::Tips => point_cells(
+                    row.edge.map_or_else(String::new, |edge| edge_name(edge).to_owned()),
+                    row.captures.iter().find_map(|capture| capture.point_mm),
+                ),
+            },
             problem: row.problem.as_deref(),
             is_enabled: row.is_enabled,
         },
     );
     let palette = theme::palette(ui);
     let color = if row.is_enabled { palette.text } else { palette.text_dim };
-    let clip = Rect::from_min_max(rect.min, pos2(rect.left() + (STEPS_RIGHT - 0.12) * rect.width(), rect.bottom()));
+    let label_right = if columns == Columns::Arcs { STEPS_RIGHT - 0.12 } else { EDGE_RIGHT - 0.08 };
+    let clip = Rect::from_min_max(rect.min, pos2(rect.left() + label_right * rect.width(), rect.bottom()));
     ui.painter().with_clip_rect(clip.intersect(ui.clip_rect())).text(
         rect.left_center() + vec2(24.0, 0.0),
         Align2::LEFT_CENTER,
@@ -211,6 +259,7 @@ fn capture_line(
     station_idx: usize,
     capture_idx: usize,
     station: &StationRow,
+    columns: Columns,
     selection: &mut Selection,
 ) -> bool {
     let row: &CaptureRow = &station.captures[capture_idx];
@@ -221,9 +270,10 @@ fn capture_line(
         ui,
         response.rect,
         &Figures {
-            steps: (capture_idx + 1).to_string(),
-            radius_mm: row.section_radius_mm,
-            rms_mm: row.rms_mm,
+            cells: match columns {
+                Columns::Arcs => arc_cells((capture_idx + 1).to_string(), row.section_radius_mm, row.rms_mm),
+                Columns::EdgePoints | Columns::Tips => point_cells((capture_idx + 1).to_string(), row.point_mm),
+            },
             problem: row.problem.as_deref(),
             is_enabled: station.is_enabled,
         },

@@ -1,19 +1,24 @@
 //! What the arcs panel draws, made without egui from the session and what was measured in it.
 
 use crate::app::Results;
-use crate::calibrate::{self, Method, Sweep, SweepPoint, solution_of};
-use crate::fit::{ArcFit, Circle, CircleMethod, PointClass};
+use crate::calibrate::{self, Edge, Method, Sweep, SweepPoint, solution_of};
+use crate::fit::line::Line;
+use crate::fit::{ArcFit, Circle, CircleMethod, EdgeFit, Feature, Flank, PointClass};
 use crate::geometry::Profile;
 use crate::session::{Reading, Session, Target};
 use crate::text::arcs as text;
 
 /// A capture in the list.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct CaptureRow {
-    /// Section radius, mm.
+    /// Section radius of a ball, mm.
     pub section_radius_mm: Option<f64>,
-    /// Fit RMS, mm.
+    /// Fit RMS of a ball's arc, mm.
     pub rms_mm: Option<f64>,
+    /// Point of an edge or tip in the laser plane, (x, z), mm.
+    pub point_mm: Option<[f64; 2]>,
+    /// What was found there.
+    pub feature: Option<Feature>,
     /// What is wrong with it, in words.
     pub problem: Option<String>,
 }
@@ -25,6 +30,8 @@ pub struct StationRow {
     pub label: String,
     /// Whether it takes part.
     pub is_enabled: bool,
+    /// The plate's edge that it saw.
+    pub edge: Option<Edge>,
     /// Its captures.
     pub captures: Vec<CaptureRow>,
     /// Section radius of its first usable capture, mm: the one that the fixed-point method takes.
@@ -52,6 +59,7 @@ pub fn station_rows(session: &Session, results: Option<&Results>) -> Vec<Station
             StationRow {
                 label: station.label.clone(),
                 is_enabled: station.enabled,
+                edge: station.edge,
                 section_radius_mm: captures.iter().find_map(|capture| capture.section_radius_mm),
                 rms_mm: pooled_rms(&captures),
                 problem: station_problem(&captures, sweep.map(|(_, sweep)| sweep)),
@@ -62,14 +70,19 @@ pub fn station_rows(session: &Session, results: Option<&Results>) -> Vec<Station
 }
 
 fn capture_row(reading: Option<&calibrate::Reading>) -> CaptureRow {
-    let (mut row, nothing) = (CaptureRow { section_radius_mm: None, rms_mm: None, problem: None }, ());
+    let mut row = CaptureRow::default();
     match reading {
         Some(calibrate::Reading::Arc(arc)) => {
             row.section_radius_mm = Some(arc.circle.radius_mm);
             row.rms_mm = Some(arc.rms_mm);
         }
         Some(calibrate::Reading::Refused(refusal)) => row.problem = Some(refusal.to_string()),
-        Some(calibrate::Reading::Edge(_) | calibrate::Reading::Point(_)) | None => nothing,
+        Some(calibrate::Reading::Edge(edge)) => {
+            row.point_mm = Some(edge.point_mm);
+            row.feature = Some(edge.feature);
+        }
+        Some(calibrate::Reading::Point(point)) => row.point_mm = Some([point.x, point.z]),
+        None => {}
     }
     row
 }
@@ -82,7 +95,11 @@ fn pooled_rms(captures: &[CaptureRow]) -> Option<f64> {
 fn station_problem(captures: &[CaptureRow], sweep: Option<&Sweep>) -> Option<String> {
     let num_refused = captures.iter().filter(|capture| capture.problem.is_some()).count();
     if num_refused > 0 {
-        return Some(text::refused_captures(num_refused, captures.len()));
+        // The reason itself where there is only one.
+        return Some(match captures {
+            [CaptureRow { problem: Some(reason), .. }] => reason.clone(),
+            _ => text::refused_captures(num_refused, captures.len()),
+        });
     }
     sweep.filter(|sweep| !sweep.covers_peak).map(|_| text::PEAK_NOT_COVERED.to_owned())
 }
@@ -106,7 +123,7 @@ pub struct ProfilePoint {
     pub z_mm: f64,
     /// What it was taken for.
     pub class: PointClass,
-    /// Distance from the shown circle, µm, positive outside.
+    /// Distance from the shown circle, µm, positive outside; or from the nearest flank. NaN where there is neither.
     pub residual_um: f64,
 }
 
@@ -125,13 +142,35 @@ pub struct SectionModel {
     pub shift_um: [f64; 3],
 }
 
+/// The edge point found in a profile, with what it was found from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EdgeModel {
+    /// What was found.
+    pub feature: Feature,
+    /// Where, (x, z), mm.
+    pub point_mm: [f64; 2],
+    /// Standard deviations of these, mm.
+    pub std_mm: [f64; 2],
+    /// The flanks.
+    pub flanks: Vec<Flank>,
+}
+
+/// What was found in a profile.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Found {
+    /// A ball's section.
+    Section(SectionModel),
+    /// An edge, corner, step or tip.
+    Edge(EdgeModel),
+}
+
 /// A profile with what was found in it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProfileModel {
     /// The valid points.
     pub points: Vec<ProfilePoint>,
-    /// The section; the sentence says why there is none.
-    pub section: Result<SectionModel, String>,
+    /// What was found; the sentence says why there is nothing.
+    pub found: Result<Found, String>,
     /// Whether z grows away from the sensor: the ball shows its near side, so its centre lies further away.
     pub z_grows_away: bool,
     /// The ball's radius, mm.
@@ -139,6 +178,30 @@ pub struct ProfileModel {
 }
 
 impl ProfileModel {
+    /// The section, where one was found.
+    #[must_use]
+    pub const fn section(&self) -> Option<&SectionModel> {
+        match &self.found {
+            Ok(Found::Section(section)) => Some(section),
+            _ => None,
+        }
+    }
+
+    /// The edge point, where one was found.
+    #[must_use]
+    pub const fn edge(&self) -> Option<&EdgeModel> {
+        match &self.found {
+            Ok(Found::Edge(edge)) => Some(edge),
+            _ => None,
+        }
+    }
+
+    /// Whether the points have residuals: distances from a circle or from flanks.
+    #[must_use]
+    pub fn has_residuals(&self) -> bool {
+        self.section().is_some() || self.edge().is_some_and(|edge| !edge.flanks.is_empty())
+    }
+
     /// Number of points of a class.
     #[must_use]
     pub fn count(&self, class: PointClass) -> usize {
@@ -154,23 +217,83 @@ pub fn profile_model(
     ball_radius_mm: Option<f64>,
     method: CircleMethod,
 ) -> ProfileModel {
-    let arc = match reading {
-        Some(calibrate::Reading::Arc(arc)) => Ok(arc.as_ref()),
-        Some(calibrate::Reading::Refused(refusal)) => Err(refusal.to_string()),
-        Some(calibrate::Reading::Edge(_) | calibrate::Reading::Point(_)) | None => Err(text::NOT_MEASURED.to_owned()),
+    let (found, classes) = match reading {
+        Some(calibrate::Reading::Arc(arc)) => (section_model(arc, method).map(Found::Section), arc.classes.as_slice()),
+        Some(calibrate::Reading::Edge(edge)) => (Ok(Found::Edge(edge_model(edge))), edge.classes.as_slice()),
+        Some(calibrate::Reading::Refused(refusal)) => (Err(refusal.to_string()), [].as_slice()),
+        Some(calibrate::Reading::Point(_)) | None => (Err(text::NOT_MEASURED.to_owned()), [].as_slice()),
     };
-    let section = arc.clone().and_then(|arc| section_model(arc, method));
-    let circle = section.as_ref().ok().map(|section| section.circle);
+    let distance_mm: Box<dyn Fn(f64, f64) -> f64> = match &found {
+        Ok(Found::Section(section)) => {
+            let circle = section.circle;
+            Box::new(move |x, z| circle.distance_mm(x, z))
+        }
+        Ok(Found::Edge(edge)) => {
+            let lines: Vec<Line> =
+                edge.flanks.iter().filter_map(|flank| Line::through(flank.ends_mm[0], flank.ends_mm[1])).collect();
+            Box::new(move |x, z| nearest(lines.iter().map(|line| line.distance_mm([x, z]))))
+        }
+        Err(_) => Box::new(|_, _| f64::NAN),
+    };
     let points: Vec<ProfilePoint> = profile
         .valid_points()
         .map(|(point_idx, x_mm, z_mm)| ProfilePoint {
             x_mm,
             z_mm,
-            class: arc.as_ref().ok().and_then(|arc| arc.classes.get(point_idx).copied()).unwrap_or(PointClass::Unused),
-            residual_um: circle.map_or(f64::NAN, |circle| circle.distance_mm(x_mm, z_mm) * 1000.0),
+            class: classes.get(point_idx).copied().unwrap_or(PointClass::Unused),
+            residual_um: distance_mm(x_mm, z_mm) * 1000.0,
         })
         .collect();
-    ProfileModel { z_grows_away: z_grows_away(&points, circle.as_ref()), points, section, ball_radius_mm }
+    let circle = match &found {
+        Ok(Found::Section(section)) => Some(section.circle),
+        _ => None,
+    };
+    ProfileModel { z_grows_away: z_grows_away(&points, circle.as_ref()), points, found, ball_radius_mm }
+}
+
+/// The distance of least size; NaN for none.
+fn nearest(distances: impl Iterator<Item = f64>) -> f64 {
+    distances.min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(f64::NAN)
+}
+
+fn edge_model(edge: &EdgeFit) -> EdgeModel {
+    EdgeModel { feature: edge.feature, point_mm: edge.point_mm, std_mm: edge.std_mm(), flanks: edge.flanks.clone() }
+}
+
+/// A station's point in the laser plane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpreadPoint {
+    /// The station.
+    pub station_idx: usize,
+    /// Its capture.
+    pub capture_idx: usize,
+    /// The station's name.
+    pub label: String,
+    /// Whether it takes part.
+    pub is_enabled: bool,
+    /// The edge that it is on.
+    pub edge: Option<Edge>,
+    /// Where, (x, z), mm.
+    pub point_mm: [f64; 2],
+}
+
+/// Where in the laser plane all stations have their points: what the calibration knows of the sensor's plane comes from there.
+#[must_use]
+pub fn spread(rows: &[StationRow]) -> Vec<SpreadPoint> {
+    let of_station = |(station_idx, row): (usize, &StationRow)| {
+        let of_capture = |(capture_idx, capture): (usize, &CaptureRow)| {
+            Some(SpreadPoint {
+                station_idx,
+                capture_idx,
+                label: row.label.clone(),
+                is_enabled: row.is_enabled,
+                edge: row.edge,
+                point_mm: capture.point_mm?,
+            })
+        };
+        row.captures.iter().enumerate().filter_map(of_capture).collect::<Vec<_>>()
+    };
+    rows.iter().enumerate().flat_map(of_station).collect()
 }
 
 fn section_model(arc: &ArcFit, method: CircleMethod) -> Result<SectionModel, String> {

@@ -54,7 +54,7 @@ fn points_keep_their_class_and_residual() {
     );
     // The outlier lies 15 mm from the centre of a circle of 10 mm.
     assert!((model.points[21].residual_um - 5000.0).abs() < 1e-6);
-    let section = model.section.expect("a section");
+    let section = model.section().expect("a section");
     assert!(section.rms_um < 1e-6 && section.shift_um.iter().all(|shift| shift.abs() < 1e-9));
 }
 
@@ -64,7 +64,7 @@ fn a_refused_profile_keeps_its_points_and_says_why() {
     let refusal = ArcRefusal::TooFewPoints { found: 3, needed: 8 };
     let reading = calibrate::Reading::Refused(refusal.clone().into());
     let model = profile_model(&profile, Some(&reading), None, CircleMethod::Robust);
-    assert_eq!(model.section, Err(refusal.to_string()));
+    assert_eq!(model.found, Err(refusal.to_string()));
     assert_eq!(model.points.len(), 23);
     assert!(capture_row(Some(&reading)).problem.is_some());
 }
@@ -76,4 +76,23 @@ fn the_curve_ends_where_the_ball_does() {
     assert!(points.iter().all(|[travel, radius]| (travel - 5.0).abs() <= 10.0 && *radius <= 10.0));
     let top = points.iter().map(|[_, radius]| *radius).fold(0.0, f64::max);
     assert!(top > 9.99);
+}
+
+#[test]
+fn a_plates_profile_has_its_flanks_and_the_distances_from_them() {
+    let x_mm: Vec<f64> = (0..200).map(|idx| f64::from(idx) * 0.1).collect();
+    let z_mm: Vec<Option<f64>> = x_mm.iter().map(|x| Some(60.0 + (x - 8.0).abs())).collect();
+    let profile = Profile::new(x_mm, &z_mm).expect("valid");
+    let found = crate::fit::extract_edge(&profile, &crate::fit::EdgeOptions::default()).expect("a corner");
+    let reading = calibrate::Reading::Edge(Arc::new(found));
+    let model = profile_model(&profile, Some(&reading), None, CircleMethod::Robust);
+    let edge = model.edge().expect("a corner");
+    assert!(model.section().is_none() && model.has_residuals());
+    assert_eq!((edge.feature, edge.flanks.len()), (Feature::Corner, 2));
+    assert!((edge.point_mm[0] - 8.0).abs() < 1e-6);
+    // On either flank.
+    assert!(model.points.iter().all(|point| point.residual_um.abs() < 1e-3));
+    let row = capture_row(Some(&reading));
+    assert_eq!((row.feature, row.problem), (Some(Feature::Corner), None));
+    assert!(row.point_mm.is_some() && row.section_radius_mm.is_none());
 }

@@ -8,12 +8,15 @@ use egui::{Align, ComboBox, Frame, Key, Layout, Margin, Modifiers, ScrollArea, U
 use crate::app::{Document, Results};
 use crate::calibrate::Sweep;
 use crate::fit::CircleMethod;
+use crate::session::Target;
 use crate::text::arcs as text;
-use crate::ui::figures::std_text;
+use crate::text::edges::feature_name;
+use crate::ui::figures::{std_text, with_std};
 use crate::ui::{PanelContext, Selection, theme, widgets};
 
-use super::model::{self, CaptureView, StationRow};
-use super::{curve, list, profile};
+use super::list::Columns;
+use super::model::{self, CaptureView, EdgeModel, Found, StationRow};
+use super::{curve, list, profile, spread};
 
 /// Width of the list, points.
 const LIST_WIDTH: f32 = 184.0;
@@ -139,12 +142,20 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut ArcsState) 
     let area = ui.available_rect_before_wrap();
     let (left, right) = area.split_left_right_at_x(area.left() + LIST_WIDTH.min(area.width() * 0.35));
     let mut left = ui.new_child(UiBuilder::new().max_rect(left));
+    let columns = match document.session.target {
+        Target::RightAnglePlate => Columns::EdgePoints,
+        Target::Point => Columns::Tips,
+        Target::Ball { .. } | Target::Workpiece | Target::Rgbd { .. } => Columns::Arcs,
+    };
     let hovered_in_list = widgets::card_with_height(
         &mut left,
         text::STATIONS,
         area.height(),
         |_| {},
-        |ui| list::show(ui, &rows, &mut state.expanded, selection, has_moved, &mut state.list_from_top).hovered_capture,
+        |ui| {
+            list::show(ui, &rows, columns, &mut state.expanded, selection, has_moved, &mut state.list_from_top)
+                .hovered_capture
+        },
     );
     let right = right.with_min_x(right.left() + theme::GAP);
     let mut right = ui.new_child(UiBuilder::new().max_rect(right));
@@ -206,8 +217,13 @@ fn plots(
         .unwrap_or(selection.capture_idx);
     let view = state.view(document, results, selection.station_idx, shown_capture);
     let is_out_of_date = results.is_some_and(|results| results.revision < document.data_revision);
-    let shift = shift_words(view.as_deref(), state.fit);
-    top_strip(ui, station, sweep, selection, &mut state.fit, shift.as_deref(), is_out_of_date);
+    let is_of_arcs = matches!(document.session.target, Target::Ball { .. });
+    let note = match view.as_deref() {
+        Some(CaptureView::Profile(model::ProfileModel { found: Ok(Found::Edge(edge)), .. })) => Some(edge_words(edge)),
+        view => shift_words(view, state.fit),
+    };
+    let fit = is_of_arcs.then_some(&mut state.fit);
+    top_strip(ui, station, sweep, selection, fit, note.as_deref(), is_out_of_date);
 
     let bottom_height = sweep.map_or(0.0, |_| BOTTOM_HEIGHT + theme::GAP);
     let height = ui.available_height() - bottom_height;
@@ -221,9 +237,13 @@ fn plots(
         let (left, right) = area.split_left_right_at_x(area.left() + profile_width);
         let right = right.with_min_x(right.left() + theme::GAP);
         let mut left = ui.new_child(UiBuilder::new().max_rect(left));
-        profile_card(&mut left, &title, height, view.as_deref(), state);
+        profile_card(&mut left, &title, height, &document.session.target, view.as_deref(), state);
         let mut right = ui.new_child(UiBuilder::new().max_rect(right));
-        curve_card(&mut right, height, station, sweep, ball_radius_mm, selection, state, hovered_in_list);
+        if is_of_arcs {
+            curve_card(&mut right, height, station, sweep, ball_radius_mm, selection, state, hovered_in_list);
+        } else {
+            spread::card(&mut right, height, &document.session.target, rows, selection, &mut state.is_curve_fitted);
+        }
         ui.advance_cursor_after_rect(area.with_max_y(area.top() + height));
         bottom_strip(ui, sweep);
     } else {
@@ -235,8 +255,13 @@ fn plots(
         scroll_area.show(&mut page, |ui| {
             ui.set_max_width(area.width());
             ui.spacing_mut().item_spacing.y = theme::GAP;
-            profile_card(ui, &title, STACKED_HEIGHT, view.as_deref(), state);
-            curve_card(ui, STACKED_HEIGHT, station, sweep, ball_radius_mm, selection, state, hovered_in_list);
+            profile_card(ui, &title, STACKED_HEIGHT, &document.session.target, view.as_deref(), state);
+            if is_of_arcs {
+                curve_card(ui, STACKED_HEIGHT, station, sweep, ball_radius_mm, selection, state, hovered_in_list);
+            } else {
+                let target = &document.session.target;
+                spread::card(ui, STACKED_HEIGHT, target, rows, selection, &mut state.is_curve_fitted);
+            }
             bottom_strip(ui, sweep);
         });
     }
@@ -250,8 +275,8 @@ fn top_strip(
     station: &StationRow,
     sweep: Option<&Sweep>,
     selection: &mut Selection,
-    fit: &mut CircleMethod,
-    shift: Option<&str>,
+    fit: Option<&mut CircleMethod>,
+    note: Option<&str>,
     is_out_of_date: bool,
 ) {
     widgets::card(
@@ -262,20 +287,23 @@ fn top_strip(
             Frame::new().inner_margin(Margin::symmetric(12, 8)).show(ui, |ui| {
                 ui.horizontal_wrapped(|ui| {
                     ui.set_min_height(STRIP_HEIGHT - 16.0);
-                    let label = ui.label(text::FIT);
-                    ComboBox::from_id_salt("arcs fit")
-                        .selected_text(text::circle_method(*fit))
-                        .width(148.0)
-                        .show_ui(ui, |ui| {
-                            for method in CircleMethod::ALL {
-                                ui.selectable_value(fit, method, text::circle_method(method));
-                            }
-                        })
-                        .response
-                        .labelled_by(label.id);
-                    steps(ui, station, selection);
-                    if let Some(shift) = shift {
-                        ui.label(theme::dim(ui, shift));
+                    let is_of_arcs = fit.is_some();
+                    if let Some(fit) = fit {
+                        let label = ui.label(text::FIT);
+                        ComboBox::from_id_salt("arcs fit")
+                            .selected_text(text::circle_method(*fit))
+                            .width(148.0)
+                            .show_ui(ui, |ui| {
+                                for method in CircleMethod::ALL {
+                                    ui.selectable_value(fit, method, text::circle_method(method));
+                                }
+                            })
+                            .response
+                            .labelled_by(label.id);
+                    }
+                    steps(ui, if is_of_arcs { text::STEP } else { text::PROFILE }, station, selection);
+                    if let Some(note) = note {
+                        ui.label(theme::dim(ui, note));
                     }
                     if let Some(sweep) = sweep {
                         let angle_deg = sweep.travel_off_normal_rad.to_degrees();
@@ -292,12 +320,12 @@ fn top_strip(
     );
 }
 
-fn steps(ui: &mut Ui, station: &StationRow, selection: &mut Selection) {
+fn steps(ui: &mut Ui, name: &str, station: &StationRow, selection: &mut Selection) {
     let num_steps = station.captures.len();
     // In a narrow window the buttons stay together, at the price of the word before them.
     if ui.available_size_before_wrap().x > STEPS_WIDTH {
         ui.add_space(8.0);
-        ui.label(theme::dim(ui, text::STEP));
+        ui.label(theme::dim(ui, name));
     }
     ui.scope(|ui| {
         ui.spacing_mut().button_padding.x = 8.0;
@@ -319,26 +347,47 @@ fn steps(ui: &mut Ui, station: &StationRow, selection: &mut Selection) {
 /// What another fit than the robust one changes.
 fn shift_words(view: Option<&CaptureView>, fit: CircleMethod) -> Option<String> {
     match view {
-        Some(CaptureView::Profile(model::ProfileModel { section: Ok(section), .. })) if fit != CircleMethod::Robust => {
+        Some(CaptureView::Profile(model::ProfileModel { found: Ok(Found::Section(section)), .. }))
+            if fit != CircleMethod::Robust =>
+        {
             Some(profile::shift_words(section))
         }
         _ => None,
     }
 }
 
-fn profile_card(ui: &mut Ui, title: &str, height: f32, view: Option<&CaptureView>, state: &mut ArcsState) {
-    let has_section = matches!(view, Some(CaptureView::Profile(model)) if model.section.is_ok());
+/// What was found, where, and how well it is known.
+fn edge_words(edge: &EdgeModel) -> String {
+    let [x, z] = [0, 1].map(|axis| with_std(edge.point_mm[axis], edge.std_mm[axis]));
+    text::edge_found(feature_name(edge.feature), &x, &z)
+}
+
+fn profile_card(
+    ui: &mut Ui,
+    title: &str,
+    height: f32,
+    target: &Target,
+    view: Option<&CaptureView>,
+    state: &mut ArcsState,
+) {
+    let found = match view {
+        Some(CaptureView::Profile(model)) => model.found.as_ref().ok(),
+        _ => None,
+    };
     let shows_whole = state.shows_whole_profile;
     let mut chosen = None;
     let right = |ui: &mut Ui| {
         ui.spacing_mut().interact_size.y = 22.0;
         ui.spacing_mut().button_padding = egui::vec2(8.0, 2.0);
         ui.spacing_mut().item_spacing.x = 4.0;
-        // Without a section all points are shown anyway.
-        if has_section {
-            for (is_whole, name, hint) in
-                [(true, text::WHOLE_PROFILE, text::WHOLE_PROFILE_HINT), (false, text::ARC_ONLY, text::ARC_ONLY_HINT)]
-            {
+        // Where nothing was found all points are shown anyway.
+        let near = found.map(|found| match found {
+            Found::Section(_) => (text::ARC_ONLY, text::ARC_ONLY_HINT),
+            Found::Edge(edge) => (feature_name(edge.feature), text::EDGE_ONLY_HINT),
+        });
+        if let Some((near_name, near_hint)) = near {
+            let whole_hint = text::whole_profile_hint(target);
+            for (is_whole, name, hint) in [(true, text::WHOLE_PROFILE, whole_hint), (false, near_name, near_hint)] {
                 let button = ui.add(egui::Button::selectable(shows_whole == is_whole, name)).on_hover_text(hint);
                 if button.clicked() {
                     chosen = Some(is_whole);
@@ -352,7 +401,7 @@ fn profile_card(ui: &mut Ui, title: &str, height: f32, view: Option<&CaptureView
         Some(CaptureView::Profile(model)) => profile::show(ui, model, shows_whole, is_fitted),
         Some(CaptureView::Point([x, y, z])) => {
             let [x, y, z] = [x, y, z].map(|value| widgets::fixed(*value, 3));
-            empty_card(ui, text::POINT_READING, Some(&text::point_coordinates(&x, &y, &z)));
+            empty_card(ui, text::point_reading(target), Some(&text::point_coordinates(target, &x, &y, &z)));
         }
         None => {}
     });
@@ -362,7 +411,7 @@ fn profile_card(ui: &mut Ui, title: &str, height: f32, view: Option<&CaptureView
     }
 }
 
-fn empty_card(ui: &mut Ui, sentence: &str, figures: Option<&str>) {
+pub(super) fn empty_card(ui: &mut Ui, sentence: &str, figures: Option<&str>) {
     Frame::new().inner_margin(Margin::same(24)).show(ui, |ui| {
         ui.add_space((ui.available_height() * 0.3).max(0.0));
         ui.vertical_centered(|ui| {

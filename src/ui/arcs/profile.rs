@@ -9,12 +9,14 @@ use crate::ui::charts::{self, Canvas, Chart, Extent, LegendEntry, LegendGlyph};
 use crate::ui::figures::{decimals_of_std, with_std};
 use crate::ui::{theme, widgets};
 
-use super::model::{ProfileModel, SectionModel};
+use super::model::{EdgeModel, Found, ProfileModel, SectionModel};
 
 /// The part of the height that the profile takes; its residuals get the rest.
 const PROFILE_PART: f32 = 0.62;
 /// Height of a plot that has room for the whole title of its z axis, points.
 const TITLE_NEEDS: f32 = 200.0;
+/// How far around an edge point the view reaches, as a part of the profile's width.
+const SURROUNDINGS_PART: f64 = 0.3;
 /// Radius of a point of a profile, points.
 const POINT_RADIUS: f32 = 1.6;
 /// Points closer than this, points on the screen, are painted once.
@@ -25,8 +27,8 @@ pub fn show(ui: &mut Ui, model: &ProfileModel, shows_whole: bool, is_fitted: &mu
     charts::legend(ui, &entries(ui, model));
     let group = Id::unique("arcs profile x");
     let height = ui.available_height();
-    let has_section = model.section.is_ok();
-    let profile_height = if has_section { (height * PROFILE_PART).round() } else { height };
+    let has_strip = model.has_residuals();
+    let profile_height = if has_strip { (height * PROFILE_PART).round() } else { height };
     let mut chart =
         Chart::new(Id::unique("arcs profile"), text::X_AXIS, text::Z_AXIS, profile_height, extent(model, shows_whole));
     chart.invert_y = model.z_grows_away;
@@ -34,25 +36,26 @@ pub fn show(ui: &mut Ui, model: &ProfileModel, shows_whole: bool, is_fitted: &mu
     chart.x_group = Some(group);
     let canvas = chart.show(ui, is_fitted);
     paint_profile(ui, &canvas, model);
-    match &model.section {
-        Ok(section) => {
-            let mut strip_extent = residual_extent(model);
-            strip_extent.x = [section.circle.x_mm - 1.0, section.circle.x_mm + 1.0];
-            let mut strip = Chart::new(
-                Id::unique("arcs residuals"),
-                text::X_AXIS,
-                text::RESIDUAL_AXIS,
-                ui.available_height(),
-                strip_extent,
-            );
-            strip.x_group = Some(group);
-            strip.follows_x = true;
-            rule(ui);
-            let strip_canvas = strip.show(ui, is_fitted);
-            paint_residuals(ui, &strip_canvas, model);
-            readout(ui, &canvas, &strip_canvas, model);
-        }
-        Err(reason) => refusal(ui, &canvas, reason),
+    if let Err(reason) = &model.found {
+        refusal(ui, &canvas, reason);
+    }
+    if has_strip {
+        let mut strip_extent = residual_extent(model);
+        let middle = match &model.found {
+            Ok(Found::Section(section)) => section.circle.x_mm,
+            Ok(Found::Edge(edge)) => edge.point_mm[0],
+            Err(_) => 0.0,
+        };
+        strip_extent.x = [middle - 1.0, middle + 1.0];
+        let height = ui.available_height();
+        let mut strip =
+            Chart::new(Id::unique("arcs residuals"), text::X_AXIS, text::RESIDUAL_AXIS, height, strip_extent);
+        strip.x_group = Some(group);
+        strip.follows_x = true;
+        rule(ui);
+        let strip_canvas = strip.show(ui, is_fitted);
+        paint_residuals(ui, &strip_canvas, model);
+        readout(ui, &canvas, &strip_canvas, model);
     }
 }
 
@@ -66,7 +69,7 @@ pub fn show_alone(ui: &mut Ui, name: &'static str, model: &ProfileModel, extent:
     chart.has_equal_scales = true;
     let canvas = chart.show(ui, is_fitted);
     paint_profile(ui, &canvas, model);
-    if let Err(reason) = &model.section {
+    if let Err(reason) = &model.found {
         refusal(ui, &canvas, reason);
     }
 }
@@ -82,7 +85,7 @@ fn entries(ui: &Ui, model: &ProfileModel) -> Vec<LegendEntry> {
     let mut entries = Vec::new();
     let mut add = |glyph, color, text| entries.push(LegendEntry { glyph, color, text });
     let circle = MarkerShape::Circle;
-    if model.section.is_ok() {
+    if model.found.is_ok() {
         add(LegendGlyph::Solid(circle), theme::INLIER, text::inliers(model.count(PointClass::Inlier)));
         let num_outliers = model.count(PointClass::Outlier);
         if num_outliers > 0 {
@@ -93,22 +96,32 @@ fn entries(ui: &Ui, model: &ProfileModel) -> Vec<LegendEntry> {
     if num_unused > 0 {
         add(LegendGlyph::Solid(circle), theme::UNUSED, text::unused(num_unused));
     }
-    if let Ok(section) = &model.section {
-        let section_color = theme::method_color(crate::calibrate::Method::BallMaxArc);
-        add(LegendGlyph::Line, section_color, text::section(&radius_words(section)));
-        if let Some(radius_mm) = model.ball_radius_mm {
-            add(LegendGlyph::Dashed, palette.text_dim, text::ball(&widgets::fixed(radius_mm, 3)));
+    match &model.found {
+        Ok(Found::Section(section)) => {
+            add(LegendGlyph::Line, fit_color(), text::section(&radius_words(section)));
+            if let Some(radius_mm) = model.ball_radius_mm {
+                add(LegendGlyph::Dashed, palette.text_dim, text::ball(&widgets::fixed(radius_mm, 3)));
+            }
         }
+        Ok(Found::Edge(edge)) if !edge.flanks.is_empty() => {
+            add(LegendGlyph::Line, fit_color(), text::flanks(edge.flanks.len()).to_owned());
+        }
+        Ok(Found::Edge(_)) | Err(_) => {}
     }
     entries
 }
 
-/// The near half of the ball with some room towards the sensor; all points as well where `shows_whole`, and only them
+/// What is fitted to the points has one colour.
+fn fit_color() -> Color32 {
+    theme::method_color(crate::calibrate::Method::BallMaxArc)
+}
+
+/// The surroundings of an edge point; else the near half of the ball with some room towards the sensor; all points as well where `shows_whole`, and only them
 /// without a section.
 #[must_use]
 pub fn extent(model: &ProfileModel, shows_whole: bool) -> Extent {
     let mut extent = Extent::NOTHING;
-    if let Ok(SectionModel { circle, .. }) = &model.section {
+    if let Some(SectionModel { circle, .. }) = model.section() {
         let reach_mm = model.ball_radius_mm.unwrap_or(circle.radius_mm).max(circle.radius_mm);
         let towards_sensor = if model.z_grows_away { -1.0 } else { 1.0 };
         extent.include(circle.x_mm - reach_mm * 1.15, circle.z_mm + towards_sensor * reach_mm * 1.2);
@@ -119,6 +132,11 @@ pub fn extent(model: &ProfileModel, shows_whole: bool) -> Extent {
     }
     for point in &model.points {
         extent.include(point.x_mm, point.z_mm);
+    }
+    if let Some(edge) = model.edge().filter(|_| !shows_whole) {
+        let reach_mm = (extent.x[1] - extent.x[0]) * SURROUNDINGS_PART;
+        let [x_mm, z_mm] = edge.point_mm;
+        return Extent { x: [x_mm - reach_mm, x_mm + reach_mm], y: [z_mm - reach_mm, z_mm + reach_mm] };
     }
     extent
 }
@@ -134,17 +152,14 @@ fn inliers(model: &ProfileModel) -> impl Iterator<Item = &super::model::ProfileP
 
 fn paint_profile(ui: &Ui, canvas: &Canvas, model: &ProfileModel) {
     let palette = theme::palette(ui);
-    let section_color = theme::method_color(crate::calibrate::Method::BallMaxArc);
-    if let Ok(section) = &model.section {
+    if let Some(section) = model.section() {
         let circle = section.circle;
         let centre = canvas.at(circle.x_mm, circle.z_mm);
-        #[expect(clippy::cast_possible_truncation, reason = "screen coordinates")]
-        let on_screen = |length_mm: f64| length_mm as f32 * canvas.scale();
         if let Some(ball_radius_mm) = model.ball_radius_mm {
             let stroke = Stroke::new(1.0, palette.text_dim.gamma_multiply(0.7));
-            charts::dashed_circle(&canvas.painter, centre, on_screen(ball_radius_mm), stroke);
+            charts::dashed_circle(&canvas.painter, centre, on_screen(canvas, ball_radius_mm), stroke);
         }
-        canvas.painter.circle_stroke(centre, on_screen(circle.radius_mm), Stroke::new(1.5, section_color));
+        canvas.painter.circle_stroke(centre, on_screen(canvas, circle.radius_mm), Stroke::new(1.5, fit_color()));
     }
     for (class, color, is_solid) in [
         (PointClass::Unused, theme::UNUSED, true),
@@ -161,15 +176,68 @@ fn paint_profile(ui: &Ui, canvas: &Canvas, model: &ProfileModel) {
             }
         }
     }
-    if let Ok(section) = &model.section {
+    if let Some(edge) = model.edge() {
+        paint_edge(ui, canvas, edge);
+    }
+    if let Some(section) = model.section() {
         let circle = section.circle;
         let centre = canvas.at(circle.x_mm, circle.z_mm);
-        let stroke = Stroke::new(1.8, section_color);
-        canvas.painter.line_segment([centre - vec2(6.0, 0.0), centre + vec2(6.0, 0.0)], stroke);
-        canvas.painter.line_segment([centre - vec2(0.0, 6.0), centre + vec2(0.0, 6.0)], stroke);
+        cross(canvas, centre, Stroke::new(1.8, fit_color()));
         let label = text::centre(&with_std(circle.x_mm, section.std_mm[0]), &with_std(circle.z_mm, section.std_mm[1]));
-        canvas.note(ui, centre + vec2(0.0, 10.0), Align2::CENTER_TOP, &label, palette.text);
+        let radius = on_screen(canvas, circle.radius_mm.max(model.ball_radius_mm.unwrap_or(0.0)));
+        let (anchor, align) = beside_circle(ui, canvas, centre, radius, &label);
+        canvas.note(ui, anchor, align, &label, palette.text);
     }
+}
+
+/// Where a text stands clear of a small circle: at its right, else at its left; inside of one that has room for it, or that
+/// fills the plot.
+fn beside_circle(ui: &Ui, canvas: &Canvas, centre: egui::Pos2, radius: f32, label: &str) -> (egui::Pos2, Align2) {
+    let below = (centre + vec2(0.0, 10.0), Align2::CENTER_TOP);
+    let size = canvas.note_rect(ui, below.0, below.1, label).size();
+    let has_room_inside = vec2(0.5 * size.x, 10.0 + size.y).length() < 0.9 * radius;
+    let aside = vec2(radius + 8.0, 0.0);
+    if has_room_inside {
+        below
+    } else if (centre + aside).x + size.x < canvas.rect().right() - 4.0 {
+        (centre + aside, Align2::LEFT_CENTER)
+    } else if (centre - aside).x - size.x > canvas.rect().left() + 4.0 {
+        (centre - aside, Align2::RIGHT_CENTER)
+    } else {
+        below
+    }
+}
+
+/// A length of the profile on the screen, points.
+fn on_screen(canvas: &Canvas, length_mm: f64) -> f32 {
+    #[expect(clippy::cast_possible_truncation, reason = "screen coordinates")]
+    let length = length_mm as f32 * canvas.scale();
+    length
+}
+
+fn cross(canvas: &Canvas, at: egui::Pos2, stroke: Stroke) {
+    canvas.painter.line_segment([at - vec2(6.0, 0.0), at + vec2(6.0, 0.0)], stroke);
+    canvas.painter.line_segment([at - vec2(0.0, 6.0), at + vec2(0.0, 6.0)], stroke);
+}
+
+/// The flanks, up to the point where they end or meet, and that point with its σ.
+fn paint_edge(ui: &Ui, canvas: &Canvas, edge: &EdgeModel) {
+    let [x_mm, z_mm] = edge.point_mm;
+    let at = canvas.at(x_mm, z_mm);
+    for flank in &edge.flanks {
+        let [_, far] = flank.ends_mm;
+        canvas.painter.line_segment([at, canvas.at(far[0], far[1])], Stroke::new(1.5, fit_color()));
+    }
+    let palette = theme::palette(ui);
+    let stroke = Stroke::new(1.4, palette.text);
+    let [x_std, z_std] = edge.std_mm;
+    charts::error_bar(&canvas.painter, canvas.at(x_mm, z_mm - z_std), canvas.at(x_mm, z_mm + z_std), stroke);
+    canvas.painter.line_segment([canvas.at(x_mm - x_std, z_mm), canvas.at(x_mm + x_std, z_mm)], stroke);
+    cross(canvas, at, Stroke::new(1.8, palette.text));
+    canvas.painter.circle_stroke(at, 9.0, stroke);
+    let label = text::centre(&with_std(x_mm, x_std), &with_std(z_mm, z_std));
+    // Towards the sensor there is nothing that the label could cover.
+    canvas.note(ui, at - vec2(0.0, 14.0), Align2::CENTER_BOTTOM, &label, palette.text);
 }
 
 fn paint_residuals(ui: &Ui, canvas: &Canvas, model: &ProfileModel) {

@@ -7,7 +7,7 @@ use egui::{
 use crate::app::Command;
 use crate::calibrate::{Method, Mount};
 use crate::text::compare as text;
-use crate::text::methods::method_name;
+use crate::text::methods::{method_name, method_short_name};
 use crate::ui::figures::std_text;
 use crate::ui::{Selection, charts, theme, widgets};
 
@@ -88,16 +88,23 @@ fn head(ui: &mut Ui, column: &Column, reference: ErrorReference, selection: &mut
     let (sign, _) = row.allocate_exact_size(vec2(14.0, 14.0), Sense::hover());
     let color = theme::method_color(column.method);
     charts::marker(row.painter(), theme::method_marker(column.method), sign.center(), 5.0, color, egui::Stroke::NONE);
-    row.add(egui::Label::new(theme::strong(name)).selectable(false).extend());
-    if let Ok(table) = &column.outcome {
+    let figures = column.outcome.as_ref().ok().map(|table| {
+        text::method_figures(
+            &coordinate(table.max_error_mm(reference)),
+            table.leave_one_out_rms_mm.map(std_text).as_deref(),
+            table.workspace_std_mm.map(std_text).as_deref(),
+        )
+    });
+    // Where the whole name leaves the figures no room, the short one does.
+    let font = egui::TextStyle::Body.resolve(row.style());
+    let width = |text: &str| row.painter().layout_no_wrap(text.to_owned(), font.clone(), Color32::PLACEHOLDER).size().x;
+    let needed = width(name) + figures.as_deref().map_or(0.0, width) + 3.0 * theme::GAP;
+    let shown_name = if needed > row.available_width() { method_short_name(column.method) } else { name };
+    row.add(egui::Label::new(theme::strong(shown_name)).selectable(false).extend()).on_hover_text(name);
+    if let (Ok(table), Some(figures)) = (&column.outcome, figures) {
         row.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let figures = text::method_figures(
-                &coordinate(table.max_error_mm(reference)),
-                table.leave_one_out_rms_mm.map(std_text).as_deref(),
-                table.workspace_std_mm.map(std_text).as_deref(),
-            );
             let label = egui::Label::new(theme::dim(ui, figures)).selectable(false).truncate();
-            ui.add(label).on_hover_text(text::METHOD_FIGURES_HINT);
+            ui.add(label).on_hover_text(text::method_figures_hint(table.is_of_plate));
         });
     }
 }
@@ -128,7 +135,7 @@ fn plain(
     let widths = widths(ui);
     let mut row = RowCells::new(ui, theme::ROW_HEIGHT);
     row.head(widths[0], text::STATION, Align2::LEFT_CENTER);
-    row.head(widths[1..4].iter().sum(), text::BALL_IN_BASE, Align2::CENTER_CENTER);
+    row.head(widths[1..4].iter().sum(), text::in_base(method), Align2::CENTER_CENTER);
     row.head(widths[4..7].iter().sum(), &reference_head(reference, table), Align2::CENTER_CENTER);
     row.head(widths[7], text::ERROR_SIZE, Align2::RIGHT_CENTER);
     let mut row = RowCells::new(ui, theme::ROW_HEIGHT - 2.0);
@@ -136,23 +143,24 @@ fn plain(
     for (width, name) in widths[1..7].iter().zip(["x", "y", "z", "Δx", "Δy", "Δz"]) {
         row.head(*width, name, Align2::RIGHT_CENTER);
     }
-    for (station_idx, station) in table.rows.iter().enumerate() {
-        ui.push_id((method, station_idx), |ui| {
+    for (row_idx, station) in table.rows.iter().enumerate() {
+        ui.push_id((method, row_idx), |ui| {
             let mut row = RowCells::new(ui, theme::ROW_HEIGHT);
             if !station.is_enabled {
                 row = row.faded();
             }
-            station_cell(&mut row, widths[0], method, station_idx, station, selection, commands);
+            station_cell(&mut row, widths[0], method, station, selection, commands);
             numbers(&mut row, &widths, station, reference);
         });
     }
 }
 
 fn reference_head(reference: ErrorReference, table: &MethodTable) -> String {
+    if table.is_of_plate {
+        return text::OFF_EDGE.to_owned();
+    }
     match (reference, table.used().next()) {
-        (ErrorReference::FirstStation, Some((station_idx, _))) => {
-            text::error_from_first(&table.rows[station_idx].label)
-        }
+        (ErrorReference::FirstStation, Some((row_idx, _))) => text::error_from_first(&table.rows[row_idx].label),
         _ => text::ERROR_FROM_MEAN.to_owned(),
     }
 }
@@ -182,11 +190,11 @@ pub fn station_cell(
     row: &mut RowCells<'_>,
     width: f32,
     method: Method,
-    station_idx: usize,
     station: &Row,
     selection: &mut Selection,
     commands: &mut Vec<Command>,
 ) {
+    let station_idx = station.station_idx;
     let cell = row.next(width);
     let row_rect = row.rect();
     let method = method_name(method);

@@ -3,13 +3,23 @@
 use nalgebra::Matrix4;
 
 use crate::app::compare::{self, Difference, Improvement, PublishedRow, ScatterEllipse, TruthDistance};
-use crate::calibrate::{Method, MethodResult, Mount, Solution, StationSolution, solution_of};
+use crate::calibrate::{
+    Edge, Method, MethodResult, Mount, PlateFound, PlatePoint, Solution, StationSolution, solution_of,
+};
 use crate::geometry::Vec3;
-use crate::session::Session;
+use crate::session::{Capture, Session, Station, Target};
+use crate::text::edges::edge_name;
 
-/// The methods from left to right: the paper's two first, then the answer to use; the published stop by choice.
-pub const COLUMN_ORDER: [Method; 4] =
-    [Method::BallFixedPoint, Method::BallMaxArc, Method::BallBundle, Method::BallMaxArcStep];
+/// The methods from left to right: the paper's first, then the answer to use; the published stop by choice.
+pub const COLUMN_ORDER: [Method; 7] = [
+    Method::BallFixedPoint,
+    Method::BallMaxArc,
+    Method::BallBundle,
+    Method::BallMaxArcStep,
+    Method::PlateOrthogonal,
+    Method::PlateBundle,
+    Method::FixedPoint,
+];
 
 /// What errors are relative to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -21,18 +31,20 @@ pub enum ErrorReference {
     Mean,
 }
 
-/// What a method says about a station.
+/// What a method says about a station, or about a point on a plate's edge.
 #[expect(clippy::struct_field_names, reason = "every name carries its unit")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UsedStation {
-    /// Ball in the sensor frame of the first capture, mm.
+    /// Ball, tip or edge point in the sensor frame of the capture, mm.
     pub target_in_sensor_mm: Vec3,
-    /// Ball in the base, mm.
+    /// The same in the base, mm.
     pub target_in_base_mm: Vec3,
-    /// Relative to the first station, mm.
+    /// Relative to the first station, mm; from its edge, for a point of a plate.
     pub error_from_first_mm: Vec3,
-    /// Relative to the mean, mm.
+    /// Relative to the mean, mm; from its edge, for a point of a plate.
     pub error_from_mean_mm: Vec3,
+    /// Where it stands in each of the two scatter plots, mm; an edge point in that of its edge only.
+    pub scatter_mm: [Option<[f64; 2]>; 2],
     /// Left-out error, mm.
     pub leave_one_out_mm: Option<f64>,
 }
@@ -55,31 +67,55 @@ impl From<&StationSolution> for UsedStation {
             target_in_base_mm: station.target_in_base_mm,
             error_from_first_mm: station.error_from_first_mm,
             error_from_mean_mm: station.error_from_mean_mm,
+            scatter_mm: [[0, 1], [0, 2]].map(|axes| Some(axes.map(|axis| station.error_from_mean_mm[axis]))),
             leave_one_out_mm: station.leave_one_out_mm,
         }
     }
 }
 
-/// A station's row in a method's table.
+impl UsedStation {
+    /// A point of a plate; it scatters in the plate's plane and off it, across its edge.
+    fn on_plate(plate: &PlateFound, point: &PlatePoint) -> Self {
+        let off_in_plate = plate.base_from_plate.rotation.inverse() * point.off_edge_mm;
+        Self {
+            target_in_sensor_mm: point.point_in_sensor_mm,
+            target_in_base_mm: point.point_in_base_mm,
+            error_from_first_mm: point.off_edge_mm,
+            error_from_mean_mm: point.off_edge_mm,
+            // Edge p runs along x, edge q along y.
+            scatter_mm: match point.edge {
+                Edge::P => [Some([off_in_plate.y, off_in_plate.z]), None],
+                Edge::Q => [None, Some([off_in_plate.x, off_in_plate.z])],
+            },
+            leave_one_out_mm: point.leave_one_out_mm,
+        }
+    }
+}
+
+/// A row in a method's table: a station, or a point on a plate's edge.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// The user's name for it.
+    /// The station's index in the session.
+    pub station_idx: usize,
+    /// The user's name for it, with the edge where it has one.
     pub label: String,
     /// Whether it takes part now.
     pub is_enabled: bool,
-    /// The first capture's flange position, mm.
+    /// The flange's position at the capture, of a station the first, mm.
     pub translation_mm: Vec3,
-    /// The first capture's orientation, w first.
+    /// Its orientation there, w first.
     pub quaternion_wxyz: [f64; 4],
     /// What the method says about it; `None` if it did not use it.
     pub used: Option<UsedStation>,
 }
 
-/// A method's table; the row's place is the station's index.
+/// A method's table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MethodTable {
-    /// One row a station of the session.
+    /// One row a station of the session, or, for a plate, one a capture.
     pub rows: Vec<Row>,
+    /// Whether the rows are points on a plate's edges, and their errors distances from these.
+    pub is_of_plate: bool,
     /// RMS of the left-out errors, mm.
     pub leave_one_out_rms_mm: Option<f64>,
     /// Standard deviation of a workspace point, mm.
@@ -93,22 +129,27 @@ pub struct MethodTable {
 }
 
 impl MethodTable {
-    /// Largest coordinate of the errors shown, mm.
+    /// Largest coordinate of the errors shown, or largest distance from an edge, mm.
     #[must_use]
     pub fn max_error_mm(&self, reference: ErrorReference) -> f64 {
-        self.used().map(|(_, used)| used.error_mm(reference).amax()).fold(0.0, f64::max)
+        let size = |error: Vec3| if self.is_of_plate { error.norm() } else { error.amax() };
+        self.used().map(|(_, used)| size(used.error_mm(reference))).fold(0.0, f64::max)
     }
 
-    /// The stations used, with their rows' places.
+    /// What was used, with its row's place.
     pub fn used(&self) -> impl Iterator<Item = (usize, &UsedStation)> {
         self.rows.iter().enumerate().filter_map(|(row_idx, row)| row.used.as_ref().map(|used| (row_idx, used)))
     }
 
-    /// The 1σ ellipse of the ball centres about their mean, in base coordinates `axes`.
+    /// What stands in one of the two scatter plots, with its row's place.
+    pub fn scatter(&self, plot: usize) -> impl Iterator<Item = (usize, [f64; 2])> {
+        self.used().filter_map(move |(row_idx, used)| Some((row_idx, used.scatter_mm[plot]?)))
+    }
+
+    /// Its 1σ ellipse.
     #[must_use]
-    pub fn ellipse(&self, axes: [usize; 2]) -> Option<ScatterEllipse> {
-        let points: Vec<[f64; 2]> =
-            self.used().map(|(_, used)| axes.map(|axis| used.error_from_mean_mm[axis])).collect();
+    pub fn ellipse(&self, plot: usize) -> Option<ScatterEllipse> {
+        let points: Vec<[f64; 2]> = self.scatter(plot).map(|(_, point)| point).collect();
         compare::scatter_ellipse(&points)
     }
 }
@@ -155,6 +196,8 @@ impl PublishedTable {
 /// All that the panel draws.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CompareModel {
+    /// What was measured; the wording depends on it.
+    pub target: Target,
     /// One column a method, in [`COLUMN_ORDER`].
     pub columns: Vec<Column>,
     /// The paper's comparison.
@@ -181,6 +224,7 @@ impl CompareModel {
             })
             .collect();
         Self {
+            target: session.target.clone(),
             columns,
             improvement: compare::improvement(results),
             differences: differences(results),
@@ -196,23 +240,25 @@ impl CompareModel {
 }
 
 fn method_table(session: &Session, solution: &Solution) -> MethodTable {
-    let rows = session
-        .stations
-        .iter()
-        .enumerate()
-        .map(|(station_idx, station)| {
-            let pose = station.captures.first().map(|capture| &capture.base_from_flange);
-            Row {
-                label: station.label.clone(),
-                is_enabled: station.enabled,
-                translation_mm: pose.map_or_else(Vec3::zeros, crate::geometry::Transform::translation_mm),
-                quaternion_wxyz: pose.map_or([1.0, 0.0, 0.0, 0.0], crate::geometry::Transform::quaternion_wxyz),
-                used: solution.stations.iter().find(|used| used.station_idx == station_idx).map(UsedStation::from),
-            }
-        })
-        .collect();
+    let stations = session.stations.iter().enumerate();
+    let rows = match &solution.plate {
+        None => stations
+            .map(|(station_idx, station)| {
+                let solved = solution.stations.iter().find(|used| used.station_idx == station_idx);
+                row(
+                    station_idx,
+                    station,
+                    station.label.clone(),
+                    station.captures.first(),
+                    solved.map(UsedStation::from),
+                )
+            })
+            .collect(),
+        Some(plate) => stations.flat_map(|(station_idx, station)| plate_rows(plate, station_idx, station)).collect(),
+    };
     MethodTable {
         rows,
+        is_of_plate: solution.plate.is_some(),
         leave_one_out_rms_mm: solution.leave_one_out.map(|left_out| left_out.rms_mm),
         workspace_std_mm: solution.uncertainty.as_ref().map(|uncertainty| uncertainty.workspace_point_std_mm),
         truth: session.truth.as_ref().map(|truth| compare::distance_from_truth(solution, truth)),
@@ -221,13 +267,47 @@ fn method_table(session: &Session, solution: &Solution) -> MethodTable {
     }
 }
 
+/// One row a capture of a station at the plate.
+fn plate_rows(plate: &PlateFound, station_idx: usize, station: &Station) -> Vec<Row> {
+    let edge = station.edge.map_or_else(String::new, |edge| format!(" {}", edge_name(edge)));
+    let label_of = |capture_idx: usize| match station.captures.len() {
+        1 => format!("{}{edge}", station.label),
+        _ => format!("{}.{}{edge}", station.label, capture_idx + 1),
+    };
+    let of_capture = |(capture_idx, capture): (usize, &Capture)| {
+        let found =
+            plate.points.iter().find(|point| (point.station_idx, point.capture_idx) == (station_idx, capture_idx));
+        let used = found.map(|point| UsedStation::on_plate(plate, point));
+        row(station_idx, station, label_of(capture_idx), Some(capture), used)
+    };
+    station.captures.iter().enumerate().map(of_capture).collect()
+}
+
+fn row(
+    station_idx: usize,
+    station: &Station,
+    label: String,
+    capture: Option<&Capture>,
+    used: Option<UsedStation>,
+) -> Row {
+    let pose = capture.map(|capture| &capture.base_from_flange);
+    Row {
+        station_idx,
+        label,
+        is_enabled: station.enabled,
+        translation_mm: pose.map_or_else(Vec3::zeros, crate::geometry::Transform::translation_mm),
+        quaternion_wxyz: pose.map_or([1.0, 0.0, 0.0, 0.0], crate::geometry::Transform::quaternion_wxyz),
+        used,
+    }
+}
+
 /// Pairs worth a row: from each step of the paper's story to the next.
 fn differences(results: &[MethodResult]) -> Vec<DifferenceRow> {
     let with_result = |methods: &[Method]| -> Vec<Method> {
         methods.iter().copied().filter(|method| solution_of(results, *method).is_some()).collect()
     };
-    let mut pairs: Vec<(Method, Method)> =
-        with_result(&COLUMN_ORDER[..3]).windows(2).map(|pair| (pair[0], pair[1])).collect();
+    let story: Vec<Method> = COLUMN_ORDER.into_iter().filter(|method| *method != Method::BallMaxArcStep).collect();
+    let mut pairs: Vec<(Method, Method)> = with_result(&story).windows(2).map(|pair| (pair[0], pair[1])).collect();
     if let [stop, curve] = with_result(&[Method::BallMaxArcStep, Method::BallMaxArc])[..] {
         pairs.push((stop, curve));
     }

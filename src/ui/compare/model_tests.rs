@@ -144,3 +144,50 @@ fn without_results_there_is_nothing_to_show() {
     let model = CompareModel::new(&session(), &[]);
     assert!(model.columns.is_empty() && model.differences.is_empty());
 }
+
+/// A simulated session of a target, with what its methods make of it.
+fn solved(kind: crate::scene::PartKind) -> (Session, Vec<MethodResult>) {
+    use crate::simulate::{SimulationOptions, SimulationTarget, simulate};
+    let session =
+        simulate(&SimulationOptions { num_points: 200, ..SimulationOptions::of(SimulationTarget::Part(kind)) });
+    let measured = crate::session::measure(&session, None, &mut crate::watch::Unwatched).expect("not cancelled");
+    let problem = crate::session::problem(&session, &measured).expect("a target of methods");
+    let results = problem.solve_all(problem.methods(), &mut crate::watch::Unwatched).expect("not cancelled");
+    (session, results)
+}
+
+#[test]
+fn a_plates_rows_are_its_points_with_their_edges() {
+    let (session, results) = solved(crate::scene::PartKind::Plate);
+    let model = CompareModel::new(&session, &results);
+    let methods: Vec<Method> = model.columns.iter().map(|column| column.method).collect();
+    assert_eq!(methods, Method::PLATE);
+    for column in &model.columns {
+        let table = column.outcome.as_ref().expect("a table");
+        assert!(table.is_of_plate);
+        assert_eq!(table.rows.len(), session.num_captures());
+        assert!(table.rows[0].label.ends_with(" p") && table.rows[17].label.ends_with(" q"));
+        // Every point stands in the plot of its own edge.
+        assert_eq!([0, 1].map(|plot| table.scatter(plot).count()), [9, 9]);
+        let largest = table.used().map(|(_, used)| used.error_from_mean_mm.norm()).fold(0.0, f64::max);
+        assert!((table.max_error_mm(ErrorReference::Mean) - largest).abs() < 1e-12 && largest > 0.0);
+        // Off an edge there are two directions, and the third is along it.
+        for (_, used) in table.used() {
+            let across = used.scatter_mm.into_iter().flatten().next().expect("a plot");
+            assert!((across[0].hypot(across[1]) - used.error_from_mean_mm.norm()).abs() < 1e-6, "{used:?}");
+        }
+    }
+    let improvement = model.improvement.expect("two methods");
+    assert_eq!((improvement.method, improvement.baseline), (Method::PlateBundle, Method::PlateOrthogonal));
+    assert_eq!(model.differences.len(), 1);
+}
+
+#[test]
+fn a_tips_table_is_that_of_its_stations() {
+    let (session, results) = solved(crate::scene::PartKind::Pin);
+    let model = CompareModel::new(&session, &results);
+    assert_eq!(model.columns.len(), 1);
+    let table = model.columns[0].outcome.as_ref().expect("a table");
+    assert!(!table.is_of_plate && model.improvement.is_none() && model.differences.is_empty());
+    assert_eq!(table.scatter(0).count(), table.used().count());
+}

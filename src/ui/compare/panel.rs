@@ -6,6 +6,7 @@ use egui::{Align, Button, Layout, ScrollArea, Ui, UiBuilder, vec2};
 
 use crate::app::{Document, Results};
 use crate::calibrate::Method;
+use crate::session::Target;
 use crate::text::compare as text;
 use crate::text::methods::{method_description, method_short_name};
 use crate::ui::verdict::{self, Band, NextStep};
@@ -64,7 +65,7 @@ impl CompareState {
         self.shown.clone().unwrap_or_else(|| {
             let has_failed = model.columns.iter().take(2).any(|column| column.outcome.is_err());
             let count = if has_failed || cards_a_row(width, MIN_CARD_WIDTH) >= 3 { 3 } else { 2 };
-            COLUMN_ORDER[..count].to_vec()
+            model.columns.iter().take(count).map(|column| column.method).collect()
         })
     }
 }
@@ -131,8 +132,11 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut CompareStat
             .collect();
         if !tables.is_empty() {
             let left_over = height - (ui.cursor().top() - top) - DIFFERENCE_HEIGHT;
-            plots(ui, &tables, left_over.clamp(MIN_PLOT_HEIGHT, MAX_PLOT_HEIGHT), state);
-            differences::show(ui, &model.differences, shown.contains(&Method::BallMaxArcStep));
+            plots(ui, &model.target, &tables, left_over.clamp(MIN_PLOT_HEIGHT, MAX_PLOT_HEIGHT), state);
+            // With one method for the target there is nothing to set it against.
+            if model.columns.len() > 1 {
+                differences::show(ui, &model.differences, shown.contains(&Method::BallMaxArcStep));
+            }
         }
     });
     ui.advance_cursor_after_rect(area);
@@ -156,11 +160,14 @@ fn toggles(ui: &mut Ui, model: &CompareModel, shown: &[Method], state: &mut Comp
                 state.shown = Some(COLUMN_ORDER.into_iter().filter(|method| chosen(*method)).collect());
             }
         }
-        ui.add_space(2.0);
-        ui.selectable_value(&mut state.reference, ErrorReference::FirstStation, text::FROM_FIRST)
-            .on_hover_text(text::FROM_FIRST_HINT);
-        ui.selectable_value(&mut state.reference, ErrorReference::Mean, text::ABOUT_MEAN)
-            .on_hover_text(text::ABOUT_MEAN_HINT);
+        // Errors at a plate are distances from its edges, relative to nothing else.
+        if model.target != Target::RightAnglePlate {
+            ui.add_space(2.0);
+            ui.selectable_value(&mut state.reference, ErrorReference::FirstStation, text::FROM_FIRST)
+                .on_hover_text(text::FROM_FIRST_HINT);
+            ui.selectable_value(&mut state.reference, ErrorReference::Mean, text::ABOUT_MEAN)
+                .on_hover_text(text::ABOUT_MEAN_HINT);
+        }
         ui.add_space(2.0);
         ui.toggle_value(&mut state.has_paper_layout, text::PAPER_LAYOUT);
         ui.toggle_value(&mut state.has_matrices, text::MATRICES);
@@ -216,22 +223,22 @@ fn rows_of_cards(
     }
 }
 
-fn plots(ui: &mut Ui, tables: &[(Method, &MethodTable)], height: f32, state: &mut CompareState) {
+fn plots(ui: &mut Ui, target: &Target, tables: &[(Method, &MethodTable)], height: f32, state: &mut CompareState) {
     let width = ui.available_width();
     if width < PLOTS_SIDE_BY_SIDE_FROM {
-        bars_card(ui, tables, height, state);
-        scatter_card(ui, tables, height, &mut state.scatter);
+        bars_card(ui, target, tables, height, state);
+        scatter_card(ui, target, tables, height, &mut state.scatter);
         return;
     }
     let area = egui::Rect::from_min_size(ui.cursor().min, vec2(width, height));
     let (left, right) = area.split_left_right_at_x(area.left() + ((width - theme::GAP) * 0.455).round());
-    bars_card(&mut ui.new_child(UiBuilder::new().max_rect(left)), tables, height, state);
+    bars_card(&mut ui.new_child(UiBuilder::new().max_rect(left)), target, tables, height, state);
     let right = right.with_min_x(right.left() + theme::GAP);
-    scatter_card(&mut ui.new_child(UiBuilder::new().max_rect(right)), tables, height, &mut state.scatter);
+    scatter_card(&mut ui.new_child(UiBuilder::new().max_rect(right)), target, tables, height, &mut state.scatter);
     ui.allocate_rect(area, egui::Sense::hover());
 }
 
-fn bars_card(ui: &mut Ui, tables: &[(Method, &MethodTable)], height: f32, state: &mut CompareState) {
+fn bars_card(ui: &mut Ui, target: &Target, tables: &[(Method, &MethodTable)], height: f32, state: &mut CompareState) {
     let has_left_out = tables.iter().any(|(_, table)| table.leave_one_out_rms_mm.is_some());
     let source = if has_left_out { state.bar_source } else { BarSource::InSample };
     let reference = state.reference;
@@ -250,14 +257,14 @@ fn bars_card(ui: &mut Ui, tables: &[(Method, &MethodTable)], height: f32, state:
             state.bar_source = BarSource::LeftOut;
         }
     };
-    widgets::card_with_height(ui, text::ERROR_PER_STATION, height, right, |ui| {
+    widgets::card_with_height(ui, text::error_per_station(target), height, right, |ui| {
         bars::show(ui, tables, source, reference);
     });
 }
 
-fn scatter_card(ui: &mut Ui, tables: &[(Method, &MethodTable)], height: f32, view: &mut ScatterView) {
+fn scatter_card(ui: &mut Ui, target: &Target, tables: &[(Method, &MethodTable)], height: f32, view: &mut ScatterView) {
     let right = |ui: &mut Ui| {
-        ui.label(theme::dim(ui, text::ABOUT_THEIR_MEAN));
+        ui.label(theme::dim(ui, text::scatter_hint(target)));
     };
-    widgets::card_with_height(ui, text::BALL_CENTRES, height, right, |ui| scatter::show(ui, tables, view));
+    widgets::card_with_height(ui, text::scatter_title(target), height, right, |ui| scatter::show(ui, tables, view));
 }

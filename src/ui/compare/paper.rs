@@ -29,19 +29,20 @@ pub fn show(
 ) {
     let scale = ui.available_width() / PARTS.iter().sum::<f32>();
     let widths = PARTS.map(|part| part * scale);
-    let heads =
-        [text::NUMBER, text::TRANSLATION, text::QUATERNION, text::BALL_IN_SENSOR, text::BALL_IN_BASE, text::ERROR];
+    let error = if table.is_of_plate { text::OFF_EDGE } else { text::ERROR };
+    let (in_sensor, in_base) = (text::in_sensor(method), text::in_base(method));
+    let heads = [text::NUMBER, text::TRANSLATION, text::QUATERNION, in_sensor, in_base, error];
     let mut row = RowCells::new(ui, theme::ROW_HEIGHT);
     for (idx, (width, head)) in widths.iter().zip(heads).enumerate() {
         row.head(*width, head, if idx == 0 { Align2::LEFT_CENTER } else { Align2::RIGHT_CENTER });
     }
-    for (station_idx, station) in table.rows.iter().enumerate() {
-        ui.push_id((method, station_idx, "paper"), |ui| {
+    for (row_idx, station) in table.rows.iter().enumerate() {
+        ui.push_id((method, row_idx, "paper"), |ui| {
             let mut row = RowCells::new(ui, 4.0 * LINE_HEIGHT + 8.0);
             if !station.is_enabled {
                 row = row.faded();
             }
-            station_cell(&mut row, widths[0], method, station_idx, station, selection, commands);
+            station_cell(&mut row, widths[0], method, station, selection, commands);
             blocks(&mut row, &widths, station, reference);
         });
     }

@@ -2,6 +2,7 @@
 
 use egui::{Align, Align2, Color32, Layout, Ui};
 
+use crate::calibrate::Method;
 use crate::text::compare as text;
 use crate::ui::{theme, widgets};
 
@@ -37,7 +38,7 @@ pub fn show(ui: &mut Ui, table: &PublishedTable) {
         let widths = PARTS.map(|part| part * scale);
         let mut row = RowCells::new(ui, theme::ROW_HEIGHT);
         row.head(widths[0], text::STATION, Align2::LEFT_CENTER);
-        row.head(widths[1..4].iter().sum(), text::BALL_IN_BASE, Align2::CENTER_CENTER);
+        row.head(widths[1..4].iter().sum(), text::in_base(Method::BallFixedPoint), Align2::CENTER_CENTER);
         row.head(widths[4..7].iter().sum(), text::PRINTED_ERROR, Align2::CENTER_CENTER);
         row.head(widths[7..].iter().sum(), text::RECOMPUTED_ERROR, Align2::CENTER_CENTER);
         for (row_idx, printed) in table.rows.iter().enumerate() {

@@ -1,4 +1,5 @@
-//! The ball's centres about their mean, seen from above and from the side, with 1σ ellipses.
+//! Where the stations find the target: centres or tips about their mean, seen from above and from the side, or the points of
+//! a plate about its edges, seen along these; with 1σ ellipses.
 
 use egui::{Align2, Id, Stroke, Ui, UiBuilder, vec2};
 
@@ -29,27 +30,34 @@ pub fn show(ui: &mut Ui, tables: &[(Method, &MethodTable)], view: &mut ScatterVi
     // One reach for both views, so that a millimetre is equally long in both.
     let reach_mm = tables
         .iter()
-        .flat_map(|(_, table)| table.used())
-        .map(|(_, used)| used.error_from_mean_mm.amax())
+        .flat_map(|(_, table)| [0, 1].into_iter().flat_map(|plot| table.scatter(plot)))
+        .map(|(_, [across, up])| across.abs().max(up.abs()))
         .fold(0.005, f64::max)
         * 1.1;
     let extent = Extent { x: [-reach_mm, reach_mm], y: [-reach_mm, reach_mm] };
     let area = ui.available_rect_before_wrap();
     let (left, right) = area.split_left_right_at_fraction(0.5);
-    let views = [("compare xy", left, [0, 1], text::Y_AXIS), ("compare xz", right, [0, 2], text::Z_AXIS)];
-    for (is_fitted, (name, rect, axes, y_title)) in view.is_fitted.iter_mut().zip(views) {
+    let titles = if tables.iter().any(|(_, table)| table.is_of_plate) {
+        [[text::ACROSS_P_AXIS, text::OFF_PLATE_AXIS], [text::ACROSS_Q_AXIS, text::OFF_PLATE_AXIS]]
+    } else {
+        [[text::X_AXIS, text::Y_AXIS], [text::X_AXIS, text::Z_AXIS]]
+    };
+    let views = [("compare xy", left), ("compare xz", right)];
+    for (plot, ((is_fitted, (name, rect)), [x_title, y_title])) in
+        view.is_fitted.iter_mut().zip(views).zip(titles).enumerate()
+    {
         let mut half = ui.new_child(UiBuilder::new().max_rect(rect));
-        let mut chart = Chart::new(Id::unique(name), text::X_AXIS, y_title, rect.height(), extent);
+        let mut chart = Chart::new(Id::unique(name), x_title, y_title, rect.height(), extent);
         chart.has_equal_scales = true;
         let canvas = chart.show(&mut half, is_fitted);
-        paint(&half, &canvas, tables, axes);
+        paint(&half, &canvas, tables, plot);
     }
     ui.advance_cursor_after_rect(area);
 }
 
-fn paint(ui: &Ui, canvas: &Canvas, tables: &[(Method, &MethodTable)], axes: [usize; 2]) {
+fn paint(ui: &Ui, canvas: &Canvas, tables: &[(Method, &MethodTable)], plot: usize) {
     for (method, table) in tables {
-        if let Some(ellipse) = table.ellipse(axes) {
+        if let Some(ellipse) = table.ellipse(plot) {
             let color = theme::method_color(*method);
             #[expect(clippy::cast_possible_truncation, reason = "screen coordinates")]
             let semi_axes = ellipse.semi_axes.map(|length_mm| length_mm as f32 * canvas.scale());
@@ -63,8 +71,7 @@ fn paint(ui: &Ui, canvas: &Canvas, tables: &[(Method, &MethodTable)], axes: [usi
     }
     let mut items = Vec::new();
     for (method, table) in tables {
-        for (row_idx, used) in table.used() {
-            let point = axes.map(|axis| used.error_from_mean_mm[axis]);
+        for (row_idx, point) in table.scatter(plot) {
             let halo = Stroke::new(0.8, theme::palette(ui).surface);
             let at = canvas.at(point[0], point[1]);
             charts::marker(&canvas.painter, theme::method_marker(*method), at, 4.2, theme::method_color(*method), halo);

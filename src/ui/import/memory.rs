@@ -146,7 +146,7 @@ const FORMS: [(OrientationForm, &str); 3] = [
     (OrientationForm::QuaternionXyzw, "quaternion-xyzw"),
 ];
 
-const ROLES: [(Role, &str); 16] = [
+const ROLES: [(Role, &str); 17] = [
     (Role::Ignore, "ignore"),
     (Role::Label, "label"),
     (Role::Position(0), "x"),
@@ -160,6 +160,7 @@ const ROLES: [(Role, &str); 16] = [
     (Role::Point(1), "point-y"),
     (Role::Point(2), "point-z"),
     (Role::Side, "side"),
+    (Role::Edge, "edge"),
     (Role::Used, "used"),
     (Role::Step, "step"),
     (Role::Profile, "profile"),

@@ -148,7 +148,7 @@ fn head(ui: &mut Ui, draft: &ImportDraft, imported: &Imported, column: usize) ->
 /// Numbers stand at the right of their columns, texts at the left.
 fn cell_layout(role: Role) -> Layout {
     match role {
-        Role::Label | Role::Side | Role::Used | Role::Profile => Layout::left_to_right(Align::Center),
+        Role::Label | Role::Side | Role::Edge | Role::Used | Role::Profile => Layout::left_to_right(Align::Center),
         _ => Layout::right_to_left(Align::Center),
     }
 }

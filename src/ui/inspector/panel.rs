@@ -3,9 +3,10 @@
 use egui::{Align, ComboBox, Layout, RichText, ScrollArea, Sense, Stroke, Ui, UiBuilder, vec2};
 
 use crate::app::{Document, Results};
-use crate::calibrate::{self, Method, Solution, StationSolution};
-use crate::fit::ArcFit;
+use crate::calibrate::{self, Method, PlatePoint, Solution, StationSolution};
+use crate::fit::{ArcFit, EdgeFit, PointClass};
 use crate::session::Reading;
+use crate::text::edges::{edge_name, feature_hint, feature_name};
 use crate::text::methods::method_short_name;
 use crate::text::shell as words;
 use crate::ui::figures::{all_digits, decimals_of_std, with_std};
@@ -81,13 +82,29 @@ fn capture_section(
         Some(calibrate::Reading::Arc(arc)) => arc_rows(ui, arc, num_points),
         Some(calibrate::Reading::Refused(reason)) => refusal(ui, &reason.to_string()),
         Some(calibrate::Reading::Point(point)) => {
-            triple_row(ui, words::BALL_IN_SENSOR, (*point).into(), POSE_DECIMALS, "mm");
+            let label = words::target_in_sensor(&document.session.target);
+            triple_row(ui, label, (*point).into(), POSE_DECIMALS, "mm");
         }
-        Some(calibrate::Reading::Edge(_)) | None => {}
+        Some(calibrate::Reading::Edge(edge)) => edge_rows(ui, edge, num_points),
+        None => {}
+    }
+    if let Some(edge) = station.edge {
+        value_row(ui, words::PLATE_EDGE, edge_name(edge));
     }
     let Some(solution) = solution else { return };
+    if let Some(plate) = &solution.plate {
+        let of_capture = |point: &&PlatePoint| (point.station_idx, point.capture_idx) == (station_idx, capture_idx);
+        match plate.points.iter().find(of_capture) {
+            Some(point) => plate_point_rows(ui, point),
+            None if station.enabled => {
+                ui.label(theme::dim(ui, words::STATION_NOT_USED));
+            }
+            None => {}
+        }
+        return;
+    }
     match solution.stations.iter().find(|solved| solved.station_idx == station_idx) {
-        Some(solved) => station_rows(ui, solved),
+        Some(solved) => station_rows(ui, solution.method, solved),
         None if station.enabled => {
             ui.label(theme::dim(ui, words::STATION_NOT_USED));
         }
@@ -104,19 +121,45 @@ fn arc_rows(ui: &mut Ui, arc: &ArcFit, num_points: usize) {
     value_row(ui, words::FIT, format!("{} µm RMS", fixed(arc.rms_mm * 1e3, 1)));
 }
 
-fn station_rows(ui: &mut Ui, solved: &StationSolution) {
-    let ratio = solved.side_cost_ratio.map_or_else(String::new, |ratio| format!("  ({} : 1)", fixed(ratio, 0)));
-    let side = match solved.side {
-        calibrate::Side::Plus => "+",
-        calibrate::Side::Minus => "−",
-    };
-    value_row(ui, words::SIDE_OF_BALL, format!("{side}{ratio}")).on_hover_text(words::SIDE_HINT);
+fn edge_rows(ui: &mut Ui, edge: &EdgeFit, num_points: usize) {
+    let name = feature_name(edge.feature);
+    let [x_std_mm, z_std_mm] = edge.std_mm();
+    value_row(ui, words::FOUND, name).on_hover_text(feature_hint(edge.feature));
+    for (label, value, std_mm) in
+        [(words::POINT_X, edge.point_mm[0], x_std_mm), (words::POINT_Z, edge.point_mm[1], z_std_mm)]
+    {
+        value_row(ui, label, format!("{} mm", with_std(value, std_mm))).on_hover_text(all_digits(value));
+    }
+    let num_used = edge.classes.iter().filter(|class| **class == PointClass::Inlier).count();
+    value_row(ui, words::POINTS_USED, words::points_used(num_used, num_points));
+    value_row(ui, words::POINT_NOISE, format!("{} µm", fixed(edge.point_std_mm * 1e3, 1)));
+}
+
+fn plate_point_rows(ui: &mut Ui, point: &PlatePoint) {
+    value_row(ui, words::OFF_EDGE, format!("{} mm", fixed(point.off_edge_mm.norm(), 3)))
+        .on_hover_text(words::OFF_EDGE_HINT);
+    if let Some(left_out_mm) = point.leave_one_out_mm {
+        value_row(ui, words::LEFT_OUT, format!("{} mm", fixed(left_out_mm, 3)))
+            .on_hover_text(words::OFF_EDGE_LEFT_OUT_HINT);
+    }
+}
+
+fn station_rows(ui: &mut Ui, method: Method, solved: &StationSolution) {
+    if Method::BALL.contains(&method) {
+        let ratio = solved.side_cost_ratio.map_or_else(String::new, |ratio| format!("  ({} : 1)", fixed(ratio, 0)));
+        let side = match solved.side {
+            calibrate::Side::Plus => "+",
+            calibrate::Side::Minus => "−",
+        };
+        value_row(ui, words::SIDE_OF_BALL, format!("{side}{ratio}")).on_hover_text(words::SIDE_HINT);
+    }
     if let Some(sweep) = &solved.sweep {
         let peak = format!("{} mm", with_std(sweep.peak_mm, sweep.peak_std_mm));
         value_row(ui, words::LARGEST_ARC_AT, peak).on_hover_text(all_digits(sweep.peak_mm));
     }
     if let Some(left_out_mm) = solved.leave_one_out_mm {
-        value_row(ui, words::LEFT_OUT, format!("{} mm", fixed(left_out_mm, 3))).on_hover_text(words::LEFT_OUT_HINT);
+        value_row(ui, words::LEFT_OUT, format!("{} mm", fixed(left_out_mm, 3)))
+            .on_hover_text(words::left_out_hint(method));
     }
 }
 

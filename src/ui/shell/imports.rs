@@ -6,6 +6,7 @@ use std::sync::Arc;
 use egui::{Context, Event, ViewportCommand};
 
 use crate::app::Command;
+use crate::app::workbench::scans::ScanCommand;
 use crate::ui::file_dialog::Purpose;
 use crate::ui::rail::Step;
 
@@ -19,6 +20,7 @@ impl Shell {
     pub(super) fn ask_for_paths(&mut self, purpose: Purpose) {
         let suggested_name = match purpose {
             Purpose::ExportPoses => self.suggested_csv(),
+            Purpose::ExportPoints => self.suggested_ply(),
             _ => String::new(),
         };
         self.file_dialog.start(purpose, suggested_name, Arc::clone(&self.wake));
@@ -32,6 +34,9 @@ impl Shell {
             Purpose::AddFurther => self.apply_to_each(paths, Command::AddFurther),
             Purpose::ExportPoses => self.apply_to_each(paths, Command::ExportPoses),
             Purpose::ExportProfiles => self.apply_to_each(paths, Command::ExportProfiles),
+            Purpose::ExportPoints => self.apply_to_each(paths, |path| scan(ScanCommand::Export(path))),
+            Purpose::OpenPoints => self.apply_to_each(paths, |path| scan(ScanCommand::OpenPoints(path))),
+            Purpose::Calibration => self.apply_to_each(paths, |path| scan(ScanCommand::UseCalibration(path))),
             Purpose::WatchedFolder => {
                 if let Some(folder) = paths.into_iter().next() {
                     self.persisted.cell.watch(folder);
@@ -49,13 +54,22 @@ impl Shell {
     /// What the field says at first where a path is typed.
     pub(super) fn suggested_path(&self, purpose: Purpose) -> String {
         let folder = std::env::current_dir().unwrap_or_default();
-        let path = if purpose == Purpose::ExportPoses { folder.join(self.suggested_csv()) } else { folder };
+        let path = match purpose {
+            Purpose::ExportPoses => folder.join(self.suggested_csv()),
+            Purpose::ExportPoints => folder.join(self.suggested_ply()),
+            _ => folder,
+        };
         path.display().to_string()
     }
 
     fn suggested_csv(&self) -> String {
         let name = self.suggested_name();
         format!("{}-poses.csv", name.strip_suffix(".json").unwrap_or(&name))
+    }
+
+    fn suggested_ply(&self) -> String {
+        let name = self.suggested_name();
+        format!("{}-points.ply", name.strip_suffix(".json").unwrap_or(&name))
     }
 
     /// Asks the system for the clipboard's text, which then comes as if it had been pasted by key.
@@ -105,4 +119,8 @@ impl Shell {
         let has_table = self.workbench.document().is_some_and(|document| !document.session.stations.is_empty());
         !is_asking && (self.step == Step::Session || !has_table)
     }
+}
+
+fn scan(command: ScanCommand) -> Command {
+    Command::Scan(Box::new(command))
 }

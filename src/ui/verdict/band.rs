@@ -53,7 +53,9 @@ pub fn show(
                             ui.label(theme::strong(text::OUT_OF_DATE).color(theme::palette(ui).warn));
                         }
                         if rows == 1 {
-                            ui.with_layout(Layout::right_to_left(Align::Center), |ui| better_by(ui, &words, true));
+                            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                                better_by(ui, band, &words, true);
+                            });
                         }
                     });
                 });
@@ -61,7 +63,7 @@ pub fn show(
                     ui.horizontal_wrapped(|ui| headline(ui, band, &words));
                 }
                 if rows > 1 && !words.comparison.is_empty() {
-                    ui.horizontal_wrapped(|ui| better_by(ui, &words, false));
+                    ui.horizontal_wrapped(|ui| better_by(ui, band, &words, false));
                 }
                 if *is_explained {
                     reasons(ui, band);
@@ -131,7 +133,7 @@ impl Words {
                 let place = if point.is_stated {
                     text::headline(&widgets::fixed(point.z_mm.abs(), 0))
                 } else {
-                    text::headline_amid_balls(&widgets::fixed(point.z_mm, 0))
+                    text::headline_amid_seen(band.method, &widgets::fixed(point.z_mm, 0))
                 };
                 [place, text::headline_figure(&std_text(point.std_mm))]
             }),
@@ -167,7 +169,7 @@ impl Words {
 
 fn comparison(improvement: &Improvement) -> Vec<(String, Tone)> {
     let mut words = vec![
-        (text::maximum_error(method_short_name(improvement.method)), Tone::Plain),
+        (text::maximum_error(improvement.method), Tone::Plain),
         (format!("{} mm,", widgets::fixed(improvement.error_mm, 3)), Tone::Figure),
     ];
     let baseline = method_short_name(improvement.baseline);
@@ -199,7 +201,8 @@ fn headline(ui: &mut Ui, band: &Band, words: &Words) {
 }
 
 /// The comparison; `is_reversed` where the layout runs from the right.
-fn better_by(ui: &mut Ui, words: &Words, is_reversed: bool) {
+fn better_by(ui: &mut Ui, band: &Band, words: &Words, is_reversed: bool) {
+    let hint = text::maximum_error_hint(band.method);
     ui.spacing_mut().item_spacing.x = 5.0;
     let palette = theme::palette(ui);
     let mut parts: Vec<RichText> = words
@@ -216,7 +219,7 @@ fn better_by(ui: &mut Ui, words: &Words, is_reversed: bool) {
         parts.reverse();
     }
     for part in parts {
-        ui.label(part).on_hover_text(text::MAXIMUM_ERROR_HINT);
+        ui.label(part).on_hover_text(hint);
     }
 }
 

@@ -44,6 +44,11 @@ impl Mark {
         verification.calibrations.iter().map(|calibration| of(&calibration.origin)).collect()
     }
 
+    /// Of something else than a calibration, in the same charts.
+    pub const fn plain(name: String, color: Color32) -> Self {
+        Self { name, color, shape: MarkerShape::Square, further: None }
+    }
+
     /// The marker.
     pub fn paint(&self, painter: &egui::Painter, at: Pos2) {
         charts::marker(painter, self.shape, at, 4.5, self.fill(), self.stroke());

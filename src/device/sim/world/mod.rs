@@ -1,25 +1,28 @@
-//! The world that the servers of a cell share: the arm and its motions, the ball, and what the profiler sees when.
+//! The world that the servers of a cell share: the arm and its motions, the ball or part, and what the profiler sees when.
+
+mod orders;
+mod profiler;
 
 use std::collections::VecDeque;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use nalgebra::Translation3;
-use thiserror::Error;
 
 use crate::geometry::{Rigid, Vec3, so3};
-use crate::scene::{Dirt, Random, Scene};
+use crate::scene::{Dirt, Part, Random, Scene};
 
-use super::chain::{Joints, Unreachable};
 use super::fault::{Delivery, Fault, FaultPlan, FaultSpec, SimDevice};
-use super::head::{Head, Height};
+use super::head::Head;
 use super::layout::Layout;
 use super::motion::{Motion, Speed, Way};
+use super::subject::Subject;
 use super::{SimOptions, SimTruth};
 
-/// Profiles a second of the cell's own clock. Faster than clients ask: one that reads and forgets, or two of them, would
-/// else be told most of the time that there is none.
-const TRIGGERS_PER_S: f64 = 1000.0;
+pub use orders::{ArmReport, MotionError, NUM_REGISTERS, Order, Step};
+
+use profiler::Profiler;
+
 /// Motions that are remembered, for profiles that were taken before the last one.
 const MAX_MOTIONS: usize = 16;
 /// Where the ball is pushed by [`Fault::BallMoved`], mm.
@@ -37,106 +40,6 @@ mod stream {
     pub const POSE: u64 = 1;
     /// And one more for each profile.
     pub const PROFILE: u64 = 1 << 32;
-}
-
-/// Why the robot does not go.
-#[derive(Clone, Copy, Debug, Error, PartialEq)]
-pub enum MotionError {
-    /// The way leads somewhere where the arm cannot be.
-    #[error(transparent)]
-    Unreachable(#[from] Unreachable),
-    /// A speed that is none.
-    #[error("a speed above 0 is needed")]
-    NoSpeed,
-    /// It was asked to refuse.
-    #[error("a simulated fault")]
-    Refused,
-    /// It is not in its remote mode.
-    #[error("the robot is not in its remote mode")]
-    NotRemote,
-}
-
-/// Where to go, and how.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Order {
-    /// Straight to a pose.
-    Straight {
-        /// Where to.
-        base_from_flange: Rigid,
-        /// The point that goes straight, and at the speed.
-        flange_from_tcp: Rigid,
-        /// How fast.
-        speed: Speed,
-    },
-    /// By the joints to a pose.
-    ByJoints {
-        /// Where to.
-        base_from_flange: Rigid,
-        /// How fast, as a part of full speed.
-        speed_part: f64,
-    },
-    /// To joint angles.
-    ToJoints {
-        /// As the controller shows them, degrees.
-        shown_deg: [f64; 6],
-        /// How fast, as a part of full speed.
-        speed_part: f64,
-    },
-}
-
-/// A step of a program that the controller runs.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Step {
-    /// Goes somewhere, and waits until it is there.
-    Go(Order),
-    /// Makes another tool point the active one.
-    SetTcp {
-        /// Where it is.
-        flange_from_tcp: Rigid,
-    },
-    /// Sets a register.
-    SetRegister {
-        /// Which.
-        register: u8,
-        /// To what.
-        value: i32,
-    },
-}
-
-/// Registers of whole numbers that programs set.
-pub const NUM_REGISTERS: usize = 48;
-
-/// What the controller says of the arm.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ArmReport {
-    /// The flange as commanded: its noise is what the controller does not know.
-    pub base_from_flange: Rigid,
-    /// The tool point that is active.
-    pub flange_from_tcp: Rigid,
-    /// Joint angles of the mechanism, rad.
-    pub joints: Joints,
-    /// The same as the controller shows them, degrees.
-    pub shown_deg: [f64; 6],
-    /// How fast the tool point goes, in the base, mm/s.
-    pub velocity_mm_s: Vec3,
-    /// How fast it turns, in the base, rad/s.
-    pub turning_rad_s: Vec3,
-    /// Whether it moves.
-    pub is_moving: bool,
-    /// Whether a program runs.
-    pub is_running: bool,
-    /// What programs have set.
-    pub registers: [i32; NUM_REGISTERS],
-    /// Since the cell began, s of its own clock.
-    pub time_s: f64,
-}
-
-impl ArmReport {
-    /// Where the tool point is.
-    #[must_use]
-    pub fn base_from_tcp(&self) -> Rigid {
-        self.base_from_flange * self.flange_from_tcp
-    }
 }
 
 /// A motion, and how far the flange truly is from where the controller says.
@@ -178,33 +81,13 @@ struct State {
     profiler: Profiler,
 }
 
-/// What the profiler's controller was told.
-#[derive(Clone, Copy, Debug, Default)]
-struct Profiler {
-    /// Profiles up to this count were forgotten.
-    forgotten: u32,
-    /// The last profile before the head went stale.
-    stale_at: Option<u32>,
-    /// The program that is active.
-    program: u8,
-    stream: Stream,
-}
-
-/// The high-speed stream that was started last.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Stream {
-    /// Which it is: a client that has been served one is not served another's.
-    pub number: u64,
-    /// Its first profile; `None` once it was stopped.
-    pub from: Option<u32>,
-}
-
-/// The arm, the ball, the profiler.
+/// The arm, the ball or part, the profiler.
 #[derive(Debug)]
 pub struct World {
     layout: Layout,
     head: Head,
-    scene: Scene,
+    subject: Subject,
+    radius_mm: f64,
     seed: u64,
     pose_std: [f64; 2],
     time_scale: f64,
@@ -221,16 +104,25 @@ impl World {
         let [position_std_mm, orientation_std_deg] = POSE_STD_MM_DEG;
         let no_error = PoseError { shift_mm: Vec3::zeros(), turn: Vec3::zeros() };
         let leg = Leg { motion: Motion::standing(layout.home), errors: [no_error; 2] };
-        Self {
-            scene: Scene {
+        let profile_std_mm = PROFILE_STD_MM * noise;
+        let subject = match options.part {
+            None => Subject::Ball(Scene {
                 ball_in_world: layout.ball_in_base,
                 radius_mm: options.radius_mm,
                 num_points: usize::from(Head::NUM_POINTS),
                 range_sign: 1.0,
-                profile_std_mm: PROFILE_STD_MM * noise,
+                profile_std_mm,
                 dirt: Dirt { has_table: true, has_holes: options.is_noisy, ..Dirt::default() },
                 decimals: None,
-            },
+            }),
+            Some(kind) => {
+                let part = Part::new(kind, layout.base_from_part(kind));
+                Subject::Part { part, profile_std_mm, loses_points: options.is_noisy }
+            }
+        };
+        Self {
+            subject,
+            radius_mm: options.radius_mm,
             layout,
             head: options.head,
             seed: options.seed,
@@ -257,11 +149,12 @@ impl World {
         SimTruth {
             flange_from_sensor: self.layout.flange_from_sensor,
             ball_in_base: self.layout.ball_in_base,
-            radius_mm: self.scene.radius_mm,
+            radius_mm: self.radius_mm,
+            base_from_part: self.subject.base_from_part(),
             push_mm: PUSH_MM,
             rough_flange_from_sensor: self.layout.rough_flange_from_sensor,
             pose_std_mm_deg: [self.pose_std[0], self.pose_std[1].to_degrees()],
-            profile_std_mm: self.scene.profile_std_mm,
+            profile_std_mm: self.subject.profile_std_mm(),
             reference_distance_mm: self.head.reference_mm,
         }
     }
@@ -419,65 +312,6 @@ impl World {
         self.now().0.faults.clear();
     }
 
-    /// The count of the newest profile; the least one that is held.
-    #[must_use]
-    pub fn trigger_counts(&self) -> (u32, u32) {
-        let (mut state, time_s) = self.now();
-        let newest = Self::newest_count(&mut state, time_s);
-        (newest, state.profiler.forgotten.saturating_add(1))
-    }
-
-    /// Forgets every profile up to a count.
-    pub fn forget_profiles(&self, up_to: u32) {
-        let (mut state, _) = self.now();
-        state.profiler.forgotten = state.profiler.forgotten.max(up_to);
-    }
-
-    /// The program of the profiler that is active.
-    #[must_use]
-    pub fn program(&self) -> u8 {
-        self.now().0.profiler.program
-    }
-
-    /// Changes that.
-    pub fn change_program(&self, program: u8) {
-        self.now().0.profiler.program = program;
-    }
-
-    /// The high-speed stream that was started last.
-    #[must_use]
-    pub fn stream(&self) -> Stream {
-        self.now().0.profiler.stream
-    }
-
-    /// Starts another from a profile on.
-    pub fn start_stream(&self, from: u32) {
-        let stream = &mut self.now().0.profiler.stream;
-        *stream = Stream { number: stream.number + 1, from: Some(from) };
-    }
-
-    /// Ends the stream of a number, unless another has taken its place.
-    pub fn end_stream(&self, number: u64) {
-        let stream = &mut self.now().0.profiler.stream;
-        if stream.number == number {
-            stream.from = None;
-        }
-    }
-
-    /// The profile of a count; the same count gives the same profile.
-    #[must_use]
-    pub fn profile(&self, trigger_count: u32) -> Vec<Height> {
-        let time_s = f64::from(trigger_count) / TRIGGERS_PER_S;
-        let (base_from_flange, is_pushed) = {
-            let (state, _) = self.now();
-            (self.true_pose(&state, time_s), state.faults.has(Fault::BallMoved))
-        };
-        let push_mm = if is_pushed { PUSH_MM } else { Vec3::zeros() };
-        let mut noise = Random::new(self.seed, stream::PROFILE + u64::from(trigger_count));
-        let base_from_sensor = base_from_flange * self.layout.flange_from_sensor;
-        self.head.see(&self.scene.with_ball_shifted_by(push_mm), &base_from_sensor, &mut noise)
-    }
-
     /// How long so many seconds of the cell's own clock are in real time.
     #[must_use]
     pub fn real(&self, time_s: f64) -> Duration {
@@ -491,17 +325,6 @@ impl World {
         let time_s = self.start.elapsed().as_secs_f64() * self.time_scale;
         self.advance(&mut state, time_s);
         (state, time_s)
-    }
-
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast of a float saturates")]
-    fn newest_count(state: &mut State, time_s: f64) -> u32 {
-        let count = (time_s * TRIGGERS_PER_S) as u32;
-        if state.faults.has(Fault::StaleProfile) {
-            *state.profiler.stale_at.get_or_insert(count)
-        } else {
-            state.profiler.stale_at = None;
-            count
-        }
     }
 
     /// Where the flange truly is at a time.

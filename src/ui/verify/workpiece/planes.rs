@@ -1,0 +1,200 @@
+//! The regions with their planes, the angles between them, and the distances of points drawn at random.
+
+use egui::{Color32, Rect, Sense, TextEdit, Ui, UiBuilder, vec2};
+use egui_extras::Column;
+
+use crate::app::workbench::scans::{ExaminedScan, ScanCommand};
+use crate::scan::PlaneFit;
+use crate::text::workpiece as words;
+use crate::ui::verify::histogram::{self, Series};
+use crate::ui::verify::marks::Mark;
+use crate::ui::verify::panel::name_field;
+use crate::ui::widgets::tables::{head, number_cell, number_head, table};
+use crate::ui::{PanelContext, theme, widgets};
+use crate::verify::Figures;
+
+use super::ask;
+use super::colors::region_color;
+
+/// Width of the histogram, as a part of the whole.
+const HISTOGRAM_PART: f32 = 0.36;
+/// Angles shown; those of the largest planes come first.
+const MOST_ANGLES: usize = 6;
+
+/// What the tables remember between frames.
+#[derive(Debug, Default)]
+pub(super) struct PlanesState {
+    /// The region whose distances are shown; all of them without.
+    region_idx: Option<usize>,
+    is_unfitted: bool,
+}
+
+/// Shows both cards in a row.
+pub(super) fn show(
+    ui: &mut Ui,
+    context: &mut PanelContext<'_>,
+    scan: &ExaminedScan,
+    height: f32,
+    state: &mut PlanesState,
+) {
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
+    let (left, right) = rect.split_left_right_at_fraction(1.0 - HISTOGRAM_PART);
+    let within = |ui: &mut Ui, rect: Rect| ui.new_child(UiBuilder::new().max_rect(rect));
+    let mut left = within(ui, left.with_max_x(left.right() - theme::GAP / 2.0));
+    let mut find = false;
+    widgets::card_with_height(
+        &mut left,
+        words::PLANES,
+        height,
+        |ui| find = ui.button(words::FIND_PLANES).on_hover_text(words::FIND_PLANES_HINT).clicked(),
+        |ui| {
+            let angles = angles(scan);
+            #[expect(clippy::cast_precision_loss, reason = "a few rows")]
+            let foot = if angles.is_empty() { 0.0 } else { 8.0 + 20.0 * angles.len().div_ceil(2) as f32 };
+            let table_height = (ui.available_height() - foot).max(60.0);
+            planes_table(ui, context, scan, table_height, state);
+            angle_rows(ui, &angles);
+        },
+    );
+    if find {
+        ask(context, ScanCommand::FindPlanes);
+    }
+    let mut right = within(ui, right.with_min_x(right.left() + theme::GAP / 2.0));
+    let region_idx = state.region_idx.filter(|idx| *idx < scan.regions.len());
+    let shown = region_idx.map_or(words::ALL_REGIONS, |idx| scan.regions[idx].name.as_str());
+    let num_drawn = scan.regions.iter().map(|region| region.distances_mm.len()).max().unwrap_or(0);
+    let title = words::histogram_title(num_drawn, shown);
+    widgets::card_with_height(
+        &mut right,
+        &title,
+        height,
+        |_| {},
+        |ui| {
+            let wanted = |idx: &usize| region_idx.is_none_or(|wanted| wanted == *idx);
+            let marks: Vec<(usize, Mark)> = (0..scan.regions.len())
+                .filter(wanted)
+                .take(4)
+                .map(|idx| (idx, Mark::plain(scan.regions[idx].name.clone(), region_color(idx))))
+                .collect();
+            let sizes = |idx: usize| scan.regions[idx].distances_mm.iter().map(|distance| distance.abs()).collect();
+            let series: Vec<Series<'_>> =
+                marks.iter().map(|(idx, mark)| Series { mark, distances_mm: sizes(*idx) }).collect();
+            if series.is_empty() {
+                widgets::nothing(ui, words::NO_PLANES);
+                return;
+            }
+            histogram::legend(ui, &marks.iter().map(|(_, mark)| mark).collect::<Vec<_>>());
+            let mut is_fitted = !state.is_unfitted;
+            histogram::show(ui, "workpiece distances", words::DISTANCE_AXIS, &series, &mut is_fitted);
+            state.is_unfitted = !is_fitted;
+        },
+    );
+}
+
+fn planes_table(
+    ui: &mut Ui,
+    context: &mut PanelContext<'_>,
+    scan: &ExaminedScan,
+    height: f32,
+    state: &mut PlanesState,
+) {
+    ui.push_id("planes", |ui| {
+        let builder = table(ui, "planes")
+            .column(Column::exact(84.0))
+            .column(Column::remainder().at_least(200.0).clip(true))
+            .columns(Column::exact(58.0), 4)
+            .column(Column::exact(30.0))
+            .auto_shrink([false, false])
+            .max_scroll_height(height - theme::ROW_HEIGHT)
+            .sense(Sense::click());
+        let header = builder.header(theme::ROW_HEIGHT, |mut row| {
+            head(&mut row, words::REGION_COLUMN);
+            head(&mut row, words::EQUATION_COLUMN);
+            for name in words::FIGURE_COLUMNS {
+                number_head(&mut row, name);
+            }
+            head(&mut row, "");
+        });
+        header.body(|body| {
+            body.rows(theme::ROW_HEIGHT, scan.regions.len(), |mut row| {
+                let idx = row.index();
+                let region = &scan.regions[idx];
+                row.set_selected(state.region_idx == Some(idx));
+                row.col(|ui| name_cell(ui, context, &region.name, idx));
+                row.col(|ui| match &region.plane {
+                    Ok(fit) => {
+                        let text = words::equation(&fit.equation()).replace('-', "−");
+                        let label = egui::Label::new(egui::RichText::new(text).font(theme::number_font()));
+                        ui.add(label.truncate()).on_hover_text(words::plane_hover(fit));
+                    }
+                    Err(error) => {
+                        ui.add(egui::Label::new(theme::dim(ui, error.to_string())).truncate());
+                    }
+                });
+                let sizes: Vec<f64> = region.distances_mm.iter().map(|distance| distance.abs()).collect();
+                let figures = Figures::of(&sizes);
+                for value in [figures.mean_mm, figures.std_mm, figures.max_mm, figures.rms_mm] {
+                    number_cell(&mut row, widgets::fixed(value, words::DISTANCE_DECIMALS));
+                }
+                row.col(|ui| {
+                    if widgets::symbol_button(ui, "×", &words::remove_region(&region.name)).clicked() {
+                        ask(context, ScanCommand::RemoveRegion(idx));
+                    }
+                });
+                if row.response().clicked() {
+                    state.region_idx = if state.region_idx == Some(idx) { None } else { Some(idx) };
+                }
+            });
+        });
+    });
+}
+
+/// The colour and the name, which can be changed in place.
+fn name_cell(ui: &mut Ui, context: &mut PanelContext<'_>, name: &str, idx: usize) {
+    ui.add_space(8.0);
+    let (square, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
+    ui.painter().rect_filled(square, 2.0, region_color(idx));
+    let mut text = name.to_owned();
+    let field = ui.add(
+        TextEdit::singleline(&mut text)
+            .id_salt(("region name", idx))
+            .frame(egui::Frame::NONE)
+            .background_color(Color32::TRANSPARENT)
+            .desired_width(48.0)
+            .char_limit(40),
+    );
+    name_field(&field, &words::region_name_field(name), &text);
+    if field.changed() {
+        ask(context, ScanCommand::RenameRegion(idx, text));
+    }
+}
+
+/// Pairs of planes with the angle between them.
+fn angles(scan: &ExaminedScan) -> Vec<(String, String)> {
+    let fits: Vec<(&str, &PlaneFit)> =
+        scan.regions.iter().filter_map(|region| Some((region.name.as_str(), region.plane.as_ref().ok()?))).collect();
+    let pairs = (0..fits.len()).flat_map(|second| (0..second).map(move |first| (first, second)));
+    pairs
+        .take(MOST_ANGLES)
+        .map(|(first, second)| {
+            let (a, b) = (fits[first], fits[second]);
+            (words::angle_label(a.0, b.0), words::angle(a.1, b.1, scan.known.angle_deg))
+        })
+        .collect()
+}
+
+/// Two a row.
+fn angle_rows(ui: &mut Ui, angles: &[(String, String)]) {
+    for pair in angles.chunks(2) {
+        let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), 16.0), Sense::hover());
+        for (column, (label, value)) in [0.0, 0.5].into_iter().zip(pair) {
+            let left = row.left() + 12.0 + column * row.width();
+            let cell = row.with_min_x(left).with_max_x(left + row.width() / 2.0 - 24.0);
+            let mut inside = ui.new_child(UiBuilder::new().max_rect(cell));
+            inside.horizontal(|ui| {
+                ui.label(theme::dim(ui, label));
+                ui.add(egui::Label::new(widgets::number_text(value)).truncate());
+            });
+        }
+    }
+}
