@@ -281,7 +281,11 @@ fn every_sample_has_its_arcs_or_says_what_to_do() {
         let has_sweep = session.stations[0].captures.len() > 1;
         for width in [560.0, 1000.0] {
             let harness = Bench::with(Shown::Arcs, session.clone()).harness_of_size([width, 1200.0]);
-            assert_eq!(harness.query_by_label(arcs_words::point_reading(&session.target)).is_some(), is_reduced, "{file_name}");
+            assert_eq!(
+                harness.query_by_label(arcs_words::point_reading(&session.target)).is_some(),
+                is_reduced,
+                "{file_name}"
+            );
             assert_eq!(harness.query_by_label(arcs_words::NO_SWEEP).is_some(), !has_sweep, "{file_name}");
         }
     }
