@@ -249,7 +249,7 @@ pub const GIVE_HINT: &str = "Adds the nearest rotation with this translation to 
 /// Why it is disabled.
 pub const GIVE_MISSING: &str = "Paste a matrix first";
 /// Label of a figure.
-pub const DEFECT: &str = "Largest element of RᵀR − 1";
+pub const DEFECT: &str = "Largest defect of lengths and products";
 /// Label of figures.
 pub const COLUMN_LENGTHS: &str = "Lengths of the columns";
 /// Label of figures.
