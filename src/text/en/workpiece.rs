@@ -368,7 +368,7 @@ pub const TOOL_RECTANGLE: &str = "Rectangle";
 pub const TOOL_RECTANGLE_HINT: &str =
     "Draw a rectangle: all points inside of it, also hidden ones, become a region. Shift turns the drag into a move";
 /// Title of a card.
-pub const PLANES: &str = "Planes";
+pub const PLANES: &str = "Planes, and distances of random points (mm)";
 /// Button.
 pub const FIND_PLANES: &str = "Find planes";
 /// What it does.
@@ -382,9 +382,9 @@ pub const DISTANCE_AXIS: &str = "distance from the plane, mm";
 /// Head of a column.
 pub const REGION_COLUMN: &str = "  region";
 /// Head of a column.
-pub const EQUATION_COLUMN: &str = "equation, mm";
+pub const EQUATION_COLUMN: &str = "equation";
 /// Heads of the columns of distances.
-pub const FIGURE_COLUMNS: [&str; 4] = ["mean, mm", "sd, mm", "max, mm", "RMS, mm"];
+pub const FIGURE_COLUMNS: [&str; 3] = ["mean", "sd", "max"];
 /// Title of a card.
 pub const TEETH: &str = "Teeth";
 /// Title of a card.
