@@ -426,7 +426,7 @@ pub fn look_along(axis: &str) -> String {
 /// Title of the histogram.
 #[must_use]
 pub fn histogram_title(num_drawn: usize, shown: &str) -> String {
-    format!("Distances of {num_drawn} random points: {shown}")
+    format!("{num_drawn} random points: {shown}")
 }
 
 /// What is known of a plane.
