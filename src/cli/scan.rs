@@ -20,6 +20,7 @@ use super::{EXIT_NOTHING_COMPUTED, EXIT_WRONG_INPUT, fail};
 /// Arguments of `handeye scan`.
 #[derive(Clone, Debug, clap::Args)]
 #[command(allow_negative_numbers = true)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub struct ScanArgs {
     /// Session file with a scan (target or further target `workpiece`), or a file of points (.ply, .csv, .xyz)
     #[arg(value_name = "FILE")]

@@ -70,7 +70,7 @@ pub(super) fn sum_over<const N: usize>(
     let parts = for_pieces(set, |piece| {
         let mut sums = [0.0; N];
         for run in piece {
-            let part = Arch::new().dispatch(Run { cloud, run: run.clone(), terms: &terms });
+            let part = Arch::new().dispatch(Run { cloud, range: run.clone(), terms: &terms });
             for (sum, part) in sums.iter_mut().zip(part) {
                 *sum += part;
             }
@@ -87,7 +87,7 @@ pub(super) fn sum_over<const N: usize>(
 
 struct Run<'a, F> {
     cloud: &'a Cloud,
-    run: Range<usize>,
+    range: Range<usize>,
     terms: &'a F,
 }
 
@@ -97,7 +97,7 @@ impl<const N: usize, F: Fn([f64; 3]) -> [f64; N]> WithSimd for Run<'_, F> {
     #[expect(clippy::inline_always, reason = "must be compiled inside the function for the wide registers")]
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) -> [f64; N] {
-        let [x, y, z] = self.cloud.offsets_mm().map(|axis| &axis[self.run.clone()]);
+        let [x, y, z] = self.cloud.offsets_mm().map(|axis| &axis[self.range.clone()]);
         let (xs, x_rest) = x.as_chunks::<LANES>();
         let (ys, y_rest) = y.as_chunks::<LANES>();
         let (zs, z_rest) = z.as_chunks::<LANES>();

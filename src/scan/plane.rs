@@ -303,7 +303,7 @@ fn least_median(sample: &[Vec3]) -> Option<Plane> {
 fn scale_mm(plane: &Plane, sample: &[Vec3]) -> f64 {
     const RESOLUTION: f64 = 1e-6;
     let mut distances: Vec<f64> = sample.iter().map(|point| plane.distance_mm(*point).abs()).collect();
-    let extent = sample.iter().map(|point| point.amax()).fold(1.0, f64::max);
+    let extent = sample.iter().map(Vec3::amax).fold(1.0, f64::max);
     (STD_OVER_MAD * median(&mut distances)).max(RESOLUTION * extent)
 }
 

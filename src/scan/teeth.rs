@@ -32,6 +32,8 @@ const NUM_AT_TIP: usize = 15;
 /// A tip is cut off or round if points near it are missing this many σ of height, and this part of the height.
 const CUT_AT_STD: f64 = 4.0;
 const CUT_AT_PART: f64 = 0.004;
+/// Waves lower than this many times the roughness of the surface are its noise.
+const LEAST_HEIGHT: f64 = 10.0;
 /// Above this the surfaces are not those of a part that stays the same in one direction, rad.
 const MOST_MISFIT: f64 = 0.2;
 
@@ -136,6 +138,10 @@ pub fn measure_teeth(cloud: &Cloud, set: &PointSet) -> Result<Teeth, ScanError> 
         }
     }
     let teeth = found.teeth();
+    let mut heights: Vec<f64> = teeth.iter().filter_map(|tooth| Some(tooth.height?.value_mm)).collect();
+    if heights.is_empty() || median(&mut heights) < LEAST_HEIGHT * sample.roughness_mm() {
+        return Err(ScanError::TooFewTeeth { found: 0 });
+    }
     if teeth.len() < 2 {
         return Err(ScanError::TooFewTeeth { found: teeth.len() });
     }

@@ -188,7 +188,9 @@ impl Workbench {
                 self.examine_scan(scan_idx, ScanCalibration::File(path));
             }
             ScanCommand::OpenPoints(path) => self.open_points(path),
-            ScanCommand::FindPlanes => self.change_regions(|_, cloud, watch| find_all(cloud, watch)),
+            ScanCommand::FindPlanes => {
+                self.change_regions(|_, cloud, watch| Ok(plane_regions(cloud, &SegmentOptions::default(), watch).ok()));
+            }
             ScanCommand::AddRegion(choice) => self.change_regions(move |mut regions, cloud, _| {
                 let set = match choice {
                     RegionChoice::Plane(seed_mm) => {
@@ -201,7 +203,8 @@ impl Workbench {
                 if set.is_empty() {
                     return Err(words::EMPTY_REGION.to_owned());
                 }
-                let name = (0..).map(region_name).find(|name| regions.iter().all(|region| region.name != *name));
+                let is_free = |name: &String| regions.iter().all(|region| region.name != *name);
+                let name = (0..=regions.len()).map(region_name).find(is_free);
                 regions.push(Region::new(cloud, name.unwrap_or_default(), set));
                 Ok(Some(regions))
             }),
@@ -384,10 +387,6 @@ impl Workbench {
             Outcome::Cancelled => {}
         }
     }
-}
-
-fn find_all(cloud: &Cloud, watch: &mut dyn Watch) -> Result<Option<Vec<Region>>, String> {
-    Ok(plane_regions(cloud, &SegmentOptions::default(), watch).ok())
 }
 
 fn named(solution: &crate::calibrate::Solution) -> NamedCalibration {

@@ -1,5 +1,7 @@
 //! Wording about scanned parts: what `handeye scan` prints and what the Verify step shows.
 
+use std::fmt::Write as _;
+
 use crate::calibrate::Method;
 use crate::scan::{Deviation, PlaneEquation, PlaneFit, Region, Round, RoundKind, Shapes, Teeth, angle_between};
 use crate::session::{Known, SessionScan};
@@ -29,7 +31,7 @@ pub fn grouped(number: usize) -> String {
     let digits = number.to_string();
     let mut grouped = String::new();
     for (idx, digit) in digits.chars().enumerate() {
-        if idx > 0 && (digits.len() - idx) % 3 == 0 {
+        if idx > 0 && (digits.len() - idx).is_multiple_of(3) {
             grouped.push(',');
         }
         grouped.push(digit);
@@ -55,7 +57,7 @@ pub fn equation(equation: &PlaneEquation) -> String {
             (false, false) => " + ",
             (false, true) => " - ",
         };
-        text.push_str(&format!("{sign}{digits} {name}"));
+        write!(text, "{sign}{digits} {name}").ok();
     }
     let offset = fixed(equation.offset_mm, decimals_for(Some(equation.offset_std_mm)).min(4));
     format!("{text} = {offset}")
@@ -126,7 +128,7 @@ pub fn planes_table(regions: &[Region], known: &Known) -> String {
     }
     for (idx, (first_name, first)) in fits.iter().enumerate() {
         for (second_name, second) in &fits[idx + 1..] {
-            text.push_str(&format!("  {first_name}, {second_name}: {}\n", angle(first, second, known.angle_deg)));
+            writeln!(text, "  {first_name}, {second_name}: {}", angle(first, second, known.angle_deg)).ok();
         }
     }
     text
@@ -138,12 +140,12 @@ pub fn shapes_table(shapes: &Shapes, known: &Known) -> String {
     let mut text = String::new();
     match &shapes.teeth {
         Some(Ok(teeth)) => text.push_str(&teeth_table(teeth, known)),
-        Some(Err(error)) => text.push_str(&format!("Teeth: {error}\n")),
+        Some(Err(error)) => drop(writeln!(text, "Teeth: {error}")),
         None => {}
     }
     match &shapes.round {
-        Some(Ok(round)) => text.push_str(&format!("{}\n", round_line(round, known.diameter_mm))),
-        Some(Err(error)) => text.push_str(&format!("Diameter: {error}\n")),
+        Some(Ok(round)) => drop(writeln!(text, "{}", round_line(round, known.diameter_mm))),
+        Some(Err(error)) => drop(writeln!(text, "Diameter: {error}")),
         None => {}
     }
     text
@@ -160,15 +162,17 @@ fn teeth_table(teeth: &Teeth, known: &Known) -> String {
             )
         };
         let (pitch, height) = (cells(tooth.pitch), cells(tooth.height));
-        text.push_str(&format!(
-            "  {:>4} {:>9} {:>10} {:>10} {:>10} {:>10}\n",
+        writeln!(
+            text,
+            "  {:>4} {:>9} {:>10} {:>10} {:>10} {:>10}",
             idx + 1,
             fixed(tooth.place_mm, 3),
             pitch.0,
             pitch.1,
             height.0,
             height.1,
-        ));
+        )
+        .ok();
     }
     for (name, values, nominal) in [
         ("pitch", teeth.pitches().collect::<Vec<_>>(), known.pitch_mm),
@@ -176,7 +180,7 @@ fn teeth_table(teeth: &Teeth, known: &Known) -> String {
     ] {
         let deviation = nominal.and_then(|nominal| Deviation::of(values.into_iter(), nominal));
         if let Some((deviation, nominal)) = deviation.zip(nominal) {
-            text.push_str(&format!("  {name}: {}\n", deviation_words(&deviation, nominal)));
+            writeln!(text, "  {name}: {}", deviation_words(&deviation, nominal)).ok();
         }
     }
     text
@@ -364,7 +368,7 @@ pub const TOOL_RECTANGLE: &str = "Rectangle";
 pub const TOOL_RECTANGLE_HINT: &str =
     "Draw a rectangle: all points inside of it, also hidden ones, become a region. Shift turns the drag into a move";
 /// Title of a card.
-pub const PLANES: &str = "Planes";
+pub const PLANES: &str = "Planes, and distances of random points (mm)";
 /// Button.
 pub const FIND_PLANES: &str = "Find planes";
 /// What it does.
@@ -378,9 +382,9 @@ pub const DISTANCE_AXIS: &str = "distance from the plane, mm";
 /// Head of a column.
 pub const REGION_COLUMN: &str = "  region";
 /// Head of a column.
-pub const EQUATION_COLUMN: &str = "equation, mm";
+pub const EQUATION_COLUMN: &str = "equation";
 /// Heads of the columns of distances.
-pub const FIGURE_COLUMNS: [&str; 4] = ["mean, mm", "sd, mm", "max, mm", "RMS, mm"];
+pub const FIGURE_COLUMNS: [&str; 3] = ["mean", "sd", "max"];
 /// Title of a card.
 pub const TEETH: &str = "Teeth";
 /// Title of a card.
@@ -422,7 +426,7 @@ pub fn look_along(axis: &str) -> String {
 /// Title of the histogram.
 #[must_use]
 pub fn histogram_title(num_drawn: usize, shown: &str) -> String {
-    format!("Distances of {num_drawn} random points: {shown}")
+    format!("{num_drawn} random points: {shown}")
 }
 
 /// What is known of a plane.

@@ -110,7 +110,7 @@ fn splat_of(thinned: &Thinned, camera: &Camera, [width, height]: [usize; 2], pix
         }
     }
     let area = (high[0] - low[0]).max(0.0) * (high[1] - low[1]).max(0.0);
-    to_usize((1.2 * (area / to_f32(count.max(1))).sqrt()).ceil().clamp(1.0, MOST))
+    to_usize((1.6 * (area / to_f32(count.max(1))).sqrt()).ceil().clamp(1.0, MOST))
 }
 
 #[expect(clippy::cast_precision_loss, reason = "sides of pictures and counts of drawn points")]

@@ -41,7 +41,7 @@ impl Thinned {
 /// A number without any pattern, the same every time.
 const fn scrambled(number: usize) -> usize {
     let mixed = (number as u64 ^ 0x5bd1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    ((mixed ^ (mixed >> 29)) >> 16) as u32 as usize
+    ((mixed ^ (mixed >> 29)) >> 16) as usize
 }
 
 #[cfg(test)]

@@ -134,15 +134,12 @@ impl CloudView {
             #[expect(clippy::cast_precision_loss, reason = "the width of a picture")]
             let pixels_per_point = key.size[0] as f32 / rect.width().max(1.0);
             let image = draw(thinned, &self.camera, key.size, pixels_per_point, &mut self.canvas);
-            match &mut self.picture {
-                Some((known, texture)) => {
-                    *known = key;
-                    texture.set(image, TextureOptions::LINEAR);
-                }
-                None => {
-                    let texture = ui.ctx().load_texture("cloud", image, TextureOptions::LINEAR);
-                    self.picture = Some((key, texture));
-                }
+            if let Some((known, texture)) = &mut self.picture {
+                *known = key;
+                texture.set(image, TextureOptions::LINEAR);
+            } else {
+                let texture = ui.ctx().load_texture("cloud", image, TextureOptions::LINEAR);
+                self.picture = Some((key, texture));
             }
         }
         if is_moving {
@@ -245,7 +242,7 @@ impl CloudView {
             && let (Some(from), Some(to)) = (self.drag_from.take(), response.interact_pointer_pos())
             && (to - from).abs().min_elem() > 3.0
         {
-            let [right, down, _] = self.camera.axes().map(|axis| axis.cast::<f64>());
+            let [right, down, _] = self.camera.axes().map(Vector3::cast::<f64>);
             let drawn = Rect::from_two_pos(from, to);
             let corners = [drawn.left_top(), drawn.right_top(), drawn.right_bottom(), drawn.left_bottom()];
             let corners = corners.map(|corner| self.camera.unproject(corner, rect).map(f64::from));

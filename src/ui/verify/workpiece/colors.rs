@@ -50,10 +50,14 @@ pub(super) fn region_color(idx: usize) -> Color32 {
     REGIONS[idx % REGIONS.len()]
 }
 
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a place among a few colours")]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    clippy::cast_sign_loss,
+    reason = "a place among a few colours"
+)]
 fn between(colors: &[Color32], part: f32) -> Color32 {
     let last = colors.len() - 1;
-    #[expect(clippy::cast_precision_loss, reason = "a few colours")]
     let place = part.clamp(0.0, 1.0) * last as f32;
     let below = (place as usize).min(last - 1);
     colors[below].lerp_to_gamma(colors[below + 1], place - below as f32)
@@ -133,15 +137,15 @@ impl Colors {
         if self.is_dark { Color32::from_rgb(0x5c, 0x66, 0x73) } else { Color32::from_rgb(0xb9, 0xc0, 0xc9) }
     }
 
-    pub(super) fn legend(&self, scan: &ExaminedScan) -> Option<Legend> {
+    pub(super) fn legend(&self, scan: &ExaminedScan) -> Legend {
         let scale = |title: &str, color| Legend::Scale { title: title.to_owned(), ends: self.ends, color };
-        Some(match self.by {
+        match self.by {
             ColorBy::Height => scale(words::HEIGHT_SCALE, height_color),
             ColorBy::Distance => scale(words::DISTANCE_SCALE, distance_color),
             ColorBy::Region => {
                 let names = scan.regions.iter().enumerate();
                 Legend::Names(names.map(|(idx, region)| (region.name.clone(), region_color(idx))).collect())
             }
-        })
+        }
     }
 }

@@ -273,7 +273,7 @@ fn picture(ui: &mut Ui, context: &mut PanelContext<'_>, scan: &ExaminedScan, hei
                 color_key: colors.key(),
                 cloud: &scan.cloud,
                 color_of: &color_of,
-                legend: colors.legend(scan),
+                legend: Some(colors.legend(scan)),
                 tool: with.get(),
             };
             view.show(ui, &scene)

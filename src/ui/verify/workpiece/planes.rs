@@ -17,7 +17,7 @@ use super::ask;
 use super::colors::region_color;
 
 /// Width of the histogram, as a part of the whole.
-const HISTOGRAM_PART: f32 = 0.36;
+const HISTOGRAM_PART: f32 = 0.3;
 /// Angles shown; those of the largest planes come first.
 const MOST_ANGLES: usize = 6;
 
@@ -52,7 +52,8 @@ pub(super) fn show(
             #[expect(clippy::cast_precision_loss, reason = "a few rows")]
             let foot = if angles.is_empty() { 0.0 } else { 8.0 + 20.0 * angles.len().div_ceil(2) as f32 };
             let table_height = (ui.available_height() - foot).max(60.0);
-            planes_table(ui, context, scan, table_height, state);
+            let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), table_height), Sense::hover());
+            planes_table(&mut within(ui, rect), context, scan, table_height, state);
             angle_rows(ui, &angles);
         },
     );
@@ -100,9 +101,9 @@ fn planes_table(
 ) {
     ui.push_id("planes", |ui| {
         let builder = table(ui, "planes")
-            .column(Column::exact(84.0))
+            .column(Column::exact(60.0))
             .column(Column::remainder().at_least(200.0).clip(true))
-            .columns(Column::exact(58.0), 4)
+            .columns(Column::exact(54.0), 3)
             .column(Column::exact(30.0))
             .auto_shrink([false, false])
             .max_scroll_height(height - theme::ROW_HEIGHT)
@@ -133,7 +134,7 @@ fn planes_table(
                 });
                 let sizes: Vec<f64> = region.distances_mm.iter().map(|distance| distance.abs()).collect();
                 let figures = Figures::of(&sizes);
-                for value in [figures.mean_mm, figures.std_mm, figures.max_mm, figures.rms_mm] {
+                for value in [figures.mean_mm, figures.std_mm, figures.max_mm] {
                     number_cell(&mut row, widgets::fixed(value, words::DISTANCE_DECIMALS));
                 }
                 row.col(|ui| {
@@ -160,7 +161,7 @@ fn name_cell(ui: &mut Ui, context: &mut PanelContext<'_>, name: &str, idx: usize
             .id_salt(("region name", idx))
             .frame(egui::Frame::NONE)
             .background_color(Color32::TRANSPARENT)
-            .desired_width(48.0)
+            .desired_width(30.0)
             .char_limit(40),
     );
     name_field(&field, &words::region_name_field(name), &text);
