@@ -187,7 +187,7 @@ fn wrong_input_is_refused_in_one_line() {
     check_refusal(&["solve", "no-such-file.json"], 2, &["no-such-file.json"]);
     check_refusal(&["check", "Cargo.toml"], 2, &["Cargo.toml", "line 1"]);
     check_refusal(&["solve", "src"], 2, &["src"]);
-    check_refusal(&["simulate", "--out", "x.json", "--target", "plate"], 2, &["plate"]);
+    check_refusal(&["simulate", "--out", "x.json", "--target", "cube"], 2, &["cube", "plate"]);
     check_refusal(&["solve"], 2, &["FILE"]);
     check_refusal(&["solve", "x.json", "--method", "best"], 2, &["best", "ball-bundle"]);
     check_refusal(&["report", "x.json", "--out", "x"], 3, &["not available", "solve"]);

@@ -52,6 +52,8 @@ fn window_on(session: Session) -> Harness<'static, Window> {
 
 fn click(harness: &mut Harness<'static, Window>, name: &str) {
     // The title of a card may say the same as the tab above it.
+    harness.get_all_by_label(name).next().expect("a control").scroll_to_me();
+    harness.run_steps(3);
     harness.get_all_by_label(name).next().expect("a control").click();
     settle(harness);
 }

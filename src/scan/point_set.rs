@@ -180,7 +180,7 @@ mod tests {
             (0..10).map(|idx| 2 * idx + 1).collect::<Vec<_>>()
         );
         let middle = PointSet::in_box(&cloud, Vec3::new(104.5, -1.0, -1.0), Vec3::new(110.5, 1.0, 1.0));
-        assert_eq!(middle.runs().collect::<Vec<_>>(), [5..11]);
+        assert!(middle.runs().eq(std::iter::once(5..11)));
         assert_eq!(all.without(&middle).runs().collect::<Vec<_>>(), [0..5, 11..20]);
         assert_eq!(middle.without(&all).len(), 0);
         assert_eq!(all.without(&PointSet::default()), all);
@@ -195,7 +195,7 @@ mod tests {
         let cloud = row(20);
         let triangle = [[2.5, -1.0], [8.5, -1.0], [5.0, 2.0]];
         let set = PointSet::in_polygon(&cloud, Vec3::x(), Vec3::y(), &triangle).expect("three corners");
-        assert_eq!(set.runs().collect::<Vec<_>>(), [4..8]);
+        assert!(set.runs().eq(std::iter::once(4..8)));
         let refusal = PointSet::in_polygon(&cloud, Vec3::x(), Vec3::y(), &triangle[..2]);
         assert_eq!(refusal, Err(ScanError::NotAPolygon { found: 2 }));
     }

@@ -107,8 +107,9 @@ fn overview(out: &mut String, session: &Session, results: &[MethodResult]) {
     {
         writeln!(
             out,
-            "{}: maximum error {} mm, {} % against {} ({} mm)",
+            "{}: {} error {} mm, {} % against {} ({} mm)",
             text::method_name(improvement.method),
+            if Method::PLATE.contains(&improvement.method) { "left-out" } else { "maximum" },
             fixed(improvement.error_mm, 3),
             signed(percent, 0),
             text::method_short_name(improvement.baseline),

@@ -208,7 +208,7 @@ pub fn verdict_of(method: &str) -> String {
 /// Beginning of the comparison.
 #[must_use]
 pub fn maximum_error(method: Method) -> String {
-    let figure = if Method::PLATE.contains(&method) { "largest distance" } else { "max error" };
+    let figure = if Method::PLATE.contains(&method) { "left-out error" } else { "max error" };
     format!("{}: {figure}", methods::method_short_name(method))
 }
 
@@ -227,10 +227,11 @@ pub fn no_better_than(baseline: &str, error_mm: &str) -> String {
 /// What the comparison's figure means.
 #[must_use]
 pub fn maximum_error_hint(method: Method) -> &'static str {
-    if Method::PLATE.contains(&method) { LARGEST_DISTANCE_HINT } else { MAXIMUM_ERROR_HINT }
+    if Method::PLATE.contains(&method) { LEFT_OUT_HINT } else { MAXIMUM_ERROR_HINT }
 }
 
-const LARGEST_DISTANCE_HINT: &str = "The largest distance of a point from the line of its edge, in the base. A small value alone proves little; see the left-out error";
+const LEFT_OUT_HINT: &str =
+    "How far the points of a station are from the edges that the other stations show, RMS over all stations";
 
 const MAXIMUM_ERROR_HINT: &str = "As in the paper: the largest coordinate of any station's ball relative to the first station's. A small value alone proves little; see the left-out error";
 

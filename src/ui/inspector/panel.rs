@@ -5,7 +5,7 @@ use egui::{Align, ComboBox, Layout, RichText, ScrollArea, Sense, Stroke, Ui, UiB
 use crate::app::{Document, Results};
 use crate::calibrate::{self, Method, PlatePoint, Solution, StationSolution};
 use crate::fit::{ArcFit, EdgeFit, PointClass};
-use crate::session::Reading;
+use crate::session::{Reading, Target};
 use crate::text::edges::{edge_name, feature_hint, feature_name};
 use crate::text::methods::method_short_name;
 use crate::text::shell as words;
@@ -80,6 +80,7 @@ fn capture_section(
     let reading = results.and_then(|results| results.measured.reading(station_idx, capture_idx));
     match reading {
         Some(calibrate::Reading::Arc(arc)) => arc_rows(ui, arc, num_points),
+        Some(calibrate::Reading::Refused(_)) if document.session.target == Target::Workpiece => {}
         Some(calibrate::Reading::Refused(reason)) => refusal(ui, &reason.to_string()),
         Some(calibrate::Reading::Point(point)) => {
             let label = words::target_in_sensor(&document.session.target);
