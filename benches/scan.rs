@@ -58,7 +58,7 @@ fn five_million_points(criterion: &mut Criterion) {
     group.bench_function("all planes", |bencher| {
         bencher.iter(|| find_planes(&cloud, &all, &SegmentOptions::default(), &mut Unwatched));
     });
-    let color_of = |idx: usize| Color32::from_gray(if idx % 2 == 0 { 120 } else { 200 });
+    let color_of = |idx: usize| Color32::from_gray(if idx.is_multiple_of(2) { 120 } else { 200 });
     for (name, most) in [("60,000", IN_MOTION), ("500,000", AT_REST)] {
         group.bench_function(format!("thin to {name}"), |bencher| {
             bencher.iter(|| Thinned::new(&cloud, black_box(most), color_of));

@@ -52,7 +52,7 @@ const MOST_BINS: f64 = 14.0;
 
 impl Histogram {
     /// A round width (1, 2 or 5 times a power of ten) for distances up to `max_mm`: about the square root of their number in
-    /// bins, and between four and [`MOST_BINS`].
+    /// bins, and between four and `MOST_BINS`.
     #[must_use]
     #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 distances")]
     pub fn round_width_mm(max_mm: f64, count: usize) -> f64 {

@@ -45,7 +45,7 @@ pub trait Unknowns<const N: usize>: Copy {
     #[must_use]
     fn stepped(&self, step: &SVector<f64, N>) -> Self;
 
-    /// The size of a step: rad, and mm over [`LEVER_MM`].
+    /// The size of a step: rad, and mm over `LEVER_MM`.
     #[must_use]
     fn size(step: &SVector<f64, N>) -> f64;
 }
