@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 
 use crate::calibrate::verdict::judge;
-use crate::calibrate::{MethodResult, Solution, Verdict, best_available};
+use crate::calibrate::{Method, MethodResult, Solution, Verdict, best_available};
 use crate::diagnose::Finding;
 use crate::plan::Plan;
 use crate::report::digits::fixed;
@@ -77,7 +77,7 @@ fn figures(solution: &Solution, examination: &Examination<'_>) -> Vec<String> {
         most_influential.map(words::influence_line),
         examination.bootstrap.map(words::bootstrap_line),
         solution.uncertainty.as_ref().map(|uncertainty| words::accuracy_line(uncertainty, solution.mount)),
-        Some(words::radius_line(solution)),
+        Method::BALL.contains(&solution.method).then(|| words::radius_line(solution)),
         solution.radius.as_ref().map(words::estimated_radius_line),
         solution.noise.as_ref().map(words::noise_line),
     ]

@@ -306,6 +306,9 @@ pub fn now_at(std_mm: &str) -> String {
 pub const PLANNING: &str = "planning …";
 /// While the result is one to be mended.
 pub const NO_PLAN_YET: &str = "Mend the first finding; poses planned from a wrong result lead nowhere.";
+/// With a plate or a tip.
+pub const PLANS_FOR_BALLS: &str =
+    "Poses are planned for a ball only. For a plate or a tip, tilt and turn the tool as far as the line allows.";
 /// Before there is a plan.
 pub const NO_PLAN: &str = "A plan needs a calibration to start from; the findings say what is missing.";
 /// Column.

@@ -6,7 +6,7 @@ use egui::{
 
 use crate::app::Command;
 use crate::calibrate::validation::Bootstrap;
-use crate::calibrate::{Solution, Uncertainty};
+use crate::calibrate::{Method, Solution, Uncertainty};
 use crate::geometry::Mat3;
 use crate::text::diagnosis as fault_words;
 use crate::text::diagnosis_panel as words;
@@ -73,9 +73,11 @@ fn figures(ui: &mut Ui, view: &View<'_>, solution: &Solution, uncertainty: &Unce
     let (weakest, weakest_mm) = uncertainty.weakest_direction();
     let weakest = fault_words::along(weakest, solution.mount);
     value_row(ui, &words::weakest(&weakest), format!("± {} mm", std_text(weakest_mm)));
-    let moved_mm = solution.workspace_point_by_radius.norm() * RADIUS_STEP_MM;
-    value_row(ui, &words::by_radius(&RADIUS_STEP_MM.to_string()), format!("{} mm", std_text(moved_mm)))
-        .on_hover_text(words::BY_RADIUS_HINT);
+    if Method::BALL.contains(&solution.method) {
+        let moved_mm = solution.workspace_point_by_radius.norm() * RADIUS_STEP_MM;
+        value_row(ui, &words::by_radius(&RADIUS_STEP_MM.to_string()), format!("{} mm", std_text(moved_mm)))
+            .on_hover_text(words::BY_RADIUS_HINT);
+    }
     bootstrap_row(ui, view, std_mm);
 }
 

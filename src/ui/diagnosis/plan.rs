@@ -6,6 +6,7 @@ use egui_extras::Column;
 use crate::app::Command;
 use crate::diagnose::Diagnosis;
 use crate::plan::{Limits, Plan};
+use crate::session::Target;
 use crate::text::diagnosis_panel as words;
 use crate::ui::figures::std_text;
 use crate::ui::widgets::tables::{head, number_cell, number_head, table};
@@ -48,6 +49,9 @@ pub fn show(ui: &mut Ui, height: f32, view: &View<'_>, commands: &mut Vec<Comman
     };
     widgets::card_with_height(ui, words::NEXT_POSES, height, right, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
+        if !matches!(view.session.target, Target::Ball { .. }) {
+            return widgets::nothing(ui, words::PLANS_FOR_BALLS);
+        }
         limits(ui, view, commands);
         if !is_sensible {
             return widgets::nothing(ui, words::NO_PLAN_YET);
