@@ -16,7 +16,7 @@
 //! | 3 | [`session`], [`plan`], [`verify`] | the document: model, edits, history, table, file format, imports, checks, measuring · where to measure next · what a calibration is worth on other data |
 //! | 2 | [`calibrate`], [`scan`] | hand-eye methods, least squares on SE(3), uncertainty, validation · points of a scanned part: clouds, planes, teeth, cylinders |
 //! | 1 | [`fit`], [`scene`], `sheet` | circle fits, the extraction of arcs and edges · what a laser line sees · numbers in text of any origin |
-//! | 0 | [`geometry`], [`watch`] | frames, rotations, conventions, profile, statistics · progress and cancel |
+//! | 0 | [`geometry`], [`watch`], `whole_file` | frames, rotations, conventions, profile, statistics · progress and cancel · files replaced in one step |
 //!
 //! # Invariants
 //! - `geometry`, `fit`, `calibrate`, `plan`, `verify` and `diagnose` are pure: no I/O, threads, clock or unseeded randomness. Same input, same bits.
@@ -41,3 +41,4 @@ pub mod text;
 pub mod ui;
 pub mod verify;
 pub mod watch;
+mod whole_file;

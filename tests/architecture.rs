@@ -5,9 +5,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// A module may name only floors below its own.
-const FLOORS: [(&str, u8); 18] = [
+const FLOORS: [(&str, u8); 19] = [
     ("geometry", 0),
     ("watch", 0),
+    ("whole_file", 0),
     ("fit", 1),
     ("scene", 1),
     ("sheet", 1),

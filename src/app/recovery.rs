@@ -21,6 +21,7 @@ use serde_json::{Map, Value, json};
 
 use crate::session::format::{self, Stamp, unix_ms};
 use crate::session::{Session, SessionError};
+use crate::whole_file;
 
 use super::jobs::Wake;
 
@@ -338,7 +339,7 @@ impl<Tell: Fn(News)> Keeper<Tell> {
 
     fn find_offers(&mut self) {
         let Ok(entries) = fs::read_dir(&self.settings.folder) else { return };
-        format::sweep(&self.settings.folder);
+        whole_file::sweep(&self.settings.folder);
         let has_extension = |path: &Path, wanted: &str| path.extension().is_some_and(|found| found == wanted);
         let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
         paths.sort_unstable();

@@ -107,11 +107,19 @@ pub fn solve_all(
     methods: &[Method],
     watch: &mut dyn Watch,
 ) -> Result<Vec<MethodResult>, Cancelled> {
+    each(methods, watch, |method| solve(problem, method))
+}
+
+/// The results of methods, one after the other.
+pub(super) fn each(
+    methods: &[Method],
+    watch: &mut dyn Watch,
+    solve: impl Fn(Method) -> Result<Solution, SolveError>,
+) -> Result<Vec<MethodResult>, Cancelled> {
     let mut results = Vec::with_capacity(methods.len());
     for &method in methods {
         watch.report(results.len(), methods.len())?;
-        let outcome = solve(problem, method);
-        results.push(MethodResult { method, outcome });
+        results.push(MethodResult { method, outcome: solve(method) });
     }
     Ok(results)
 }

@@ -238,11 +238,6 @@ impl Problem {
     /// # Errors
     /// [`Cancelled`] if `watch` says so between two methods.
     pub fn solve_all(&self, methods: &[Method], watch: &mut dyn Watch) -> Result<Vec<MethodResult>, Cancelled> {
-        let mut results = Vec::with_capacity(methods.len());
-        for &method in methods {
-            watch.report(results.len(), methods.len())?;
-            results.push(MethodResult { method, outcome: self.solve(method) });
-        }
-        Ok(results)
+        super::method::each(methods, watch, |method| self.solve(method))
     }
 }

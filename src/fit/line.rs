@@ -3,6 +3,7 @@
 use crate::geometry::stats::{STD_OVER_MAD, SplitMix, median};
 
 use super::sums::sum_over;
+use super::windows;
 
 /// Hypotheses tried in a search. Pairs from neighbouring points are clean more often than not, so far fewer would do.
 const HYPOTHESES: usize = 40;
@@ -209,19 +210,11 @@ pub fn search(x_mm: &[f64], z_mm: &[f64], tolerance_mm: f64) -> Option<Line> {
     if num_points < 2 {
         return None;
     }
-    let stride = num_points.div_ceil(SCORED_POINTS).max(1);
-    let scored_x: Vec<f64> = x_mm.iter().copied().step_by(stride).collect();
-    let scored_z: Vec<f64> = z_mm.iter().copied().step_by(stride).collect();
+    let [scored_x, scored_z] = [x_mm, z_mm].map(|values| windows::thinned(values, num_points, SCORED_POINTS));
     let mut random = SplitMix::new(0x0011_4e5e_a2c4);
     let mut best: Option<(Line, u32)> = None;
     for hypothesis in 0..HYPOTHESES {
-        #[expect(
-            clippy::cast_precision_loss,
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a part of the number of points"
-        )]
-        let width = ((num_points as f64 * WINDOWS[hypothesis % WINDOWS.len()]) as usize).clamp(1, num_points - 1);
+        let width = windows::width(num_points, WINDOWS[hypothesis % WINDOWS.len()], num_points - 1);
         let first = random.below(num_points - width);
         let ends = [first, first + width].map(|idx| [x_mm[idx], z_mm[idx]]);
         let Some(line) = Line::through(ends[0], ends[1]) else { continue };

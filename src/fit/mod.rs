@@ -13,6 +13,7 @@ pub mod line;
 pub mod ransac;
 pub mod robust;
 pub(crate) mod sums;
+mod windows;
 
 pub use arc::{ArcFit, ArcOptions, PointClass, extract_arc};
 pub use circle::{Circle, CircleFit, CircleMethod};

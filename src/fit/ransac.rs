@@ -2,7 +2,7 @@
 
 use crate::geometry::stats::SplitMix;
 
-use super::Circle;
+use super::{Circle, windows};
 
 /// Hypotheses tried. With an arc over a fifth of the profile one in eight is clean, so 96 miss it once in 10⁵ times.
 const HYPOTHESES: usize = 96;
@@ -32,20 +32,11 @@ pub fn find_circle(x_mm: &[f64], z_mm: &[f64], search: &CircleSearch) -> Option<
     if num_points < 3 {
         return None;
     }
-    let stride = num_points.div_ceil(SCORED_POINTS).max(1);
-    let scored_x: Vec<f64> = x_mm.iter().copied().step_by(stride).collect();
-    let scored_z: Vec<f64> = z_mm.iter().copied().step_by(stride).collect();
+    let [scored_x, scored_z] = [x_mm, z_mm].map(|values| windows::thinned(values, num_points, SCORED_POINTS));
     let mut random = SplitMix::new(0x005e_ed0f_a2c5);
     let mut best: Option<(Circle, usize)> = None;
     for hypothesis in 0..HYPOTHESES {
-        #[expect(
-            clippy::cast_precision_loss,
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a part of the number of points"
-        )]
-        let half_width =
-            ((num_points as f64 * WINDOWS[hypothesis % WINDOWS.len()]) as usize).clamp(1, (num_points - 1) / 2);
+        let half_width = windows::width(num_points, WINDOWS[hypothesis % WINDOWS.len()], (num_points - 1) / 2);
         let middle = half_width + random.below(num_points - 2 * half_width);
         let indices = [middle - half_width, middle, middle + half_width];
         let Some(circle) = circle_through(indices.map(|idx| (x_mm[idx], z_mm[idx]))) else {

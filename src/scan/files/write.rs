@@ -6,6 +6,7 @@ use std::path::Path;
 
 use crate::scan::Cloud;
 use crate::watch::{Cancelled, Watch};
+use crate::whole_file;
 
 use super::{CloudFileError, REPORT_EVERY};
 
@@ -47,37 +48,18 @@ pub fn write_cloud(
     watch: &mut dyn Watch,
 ) -> Result<(), CloudFileError> {
     let unwritable = |problem: io::Error| CloudFileError::Unwritable { file: path.to_owned(), problem };
-    let existing = fs::metadata(path).ok();
-    if let Some(metadata) = &existing
-        && (metadata.permissions().readonly() || !metadata.is_file())
-    {
+    if fs::metadata(path).is_ok_and(|metadata| metadata.permissions().readonly() || !metadata.is_file()) {
         return Err(unwritable(io::Error::new(io::ErrorKind::PermissionDenied, "it is read-only, or no file")));
     }
-    let target = if existing.is_some() { fs::canonicalize(path).map_err(unwritable)? } else { path.to_path_buf() };
-    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    // Dropped on the way out of an error, and so removed. The name is that of all our temporary files, so that one that was
-    // left by a killed program is swept away with the next save.
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".handeye-").suffix(".tmp");
-    #[cfg(unix)]
-    let permissions = std::os::unix::fs::PermissionsExt::from_mode(0o666);
-    #[cfg(unix)]
-    builder.permissions(permissions);
-    let mut temporary = builder.tempfile_in(folder).map_err(unwritable)?;
-    let _ = temporary.as_file().try_lock();
-    let mut out = BufWriter::with_capacity(1 << 18, temporary.as_file_mut());
-    write_points(cloud, &mut out, format, watch).map_err(|failure| match failure {
+    let written = whole_file::replace(path, |file| {
+        let mut out = BufWriter::with_capacity(1 << 18, file);
+        write_points(cloud, &mut out, format, watch)?;
+        Ok(out.flush()?)
+    });
+    written.map(drop).map_err(|failure| match failure {
         Failure::System(problem) => unwritable(problem),
         Failure::Cancelled(cancelled) => CloudFileError::Cancelled(cancelled),
-    })?;
-    out.flush().map_err(unwritable)?;
-    drop(out);
-    if let Some(metadata) = existing {
-        temporary.as_file().set_permissions(metadata.permissions()).map_err(unwritable)?;
-    }
-    temporary.as_file().sync_all().map_err(unwritable)?;
-    temporary.persist(&target).map_err(|error| unwritable(error.error))?;
-    Ok(())
+    })
 }
 
 enum Failure {

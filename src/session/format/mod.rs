@@ -21,8 +21,8 @@ use self::cursor::{Cursor, Refusal};
 use self::tree::{Node, quoted};
 use super::{Session, SessionError};
 
+pub(crate) use save::replace_file;
 pub use save::{is_read_only, save, save_over};
-pub(crate) use save::{replace_file, sweep};
 pub use stamp::{Stamp, unix_ms};
 pub use write::to_json;
 
