@@ -68,7 +68,7 @@ fn next(workbench: &Workbench, step: Step) -> Option<(String, Action)> {
         return Some((words::next_findings(num_findings), Action::GoTo(Step::Diagnosis)));
     }
     let (label, action) = match step {
-        Step::Session | Step::Capture => (words::NEXT_ARCS, Action::GoTo(Step::Arcs)),
+        Step::Session | Step::Capture => (words::next_arcs(&document.session.target), Action::GoTo(Step::Arcs)),
         Step::Arcs => (words::NEXT_POSES, Action::GoTo(Step::Poses)),
         Step::Poses => (words::NEXT_COMPARE, Action::GoTo(Step::Compare)),
         Step::Compare => (words::NEXT_DIAGNOSIS, Action::GoTo(Step::Diagnosis)),

@@ -76,7 +76,7 @@ impl Checks {
                 // That there are no points is said already.
                 if !without_points.contains(&(station.label.clone(), capture_idx)) {
                     let sentence = words::refused(capture_idx + 1, &reason.to_string());
-                    let word = words::NO_ARC.to_owned();
+                    let word = words::not_found(&document.session.target).to_owned();
                     add(&station.label, Note { word, sentence, capture_idx: Some(capture_idx) });
                 }
             }
