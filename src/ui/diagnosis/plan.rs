@@ -15,10 +15,9 @@ use super::model::{self, View};
 
 /// Least widths of the columns: position, angles, tilt, azimuth, spin, σ; they share what is left.
 const WIDTHS: [f32; 10] = [51.0, 51.0, 51.0, 49.0, 49.0, 49.0, 40.0, 50.0, 44.0, 48.0];
-/// Width of the column of a plate's edges.
-const EDGE_WIDTH: f32 = 36.0;
-/// Width of the column of numbers.
+/// Width of the column of numbers, and with a plate's edge behind.
 const NUMBER_WIDTH: f32 = 22.0;
+const EDGE_WIDTH: f32 = 38.0;
 /// Free room at the right end, points.
 const END_MARGIN: f32 = 6.0;
 /// Decimals of a planned pose: the robot need not be there more exactly.
@@ -67,20 +66,15 @@ fn poses(ui: &mut Ui, view: &View<'_>, plan: &Plan) {
     let convention = view.session.robot.notation.convention;
     ui.spacing_mut().item_spacing.x = 0.0;
     let has_edges = plan.stations.iter().any(|station| station.edge.is_some());
-    let mut builder = table(ui, "next poses").column(Column::exact(NUMBER_WIDTH));
-    if has_edges {
-        builder = builder.column(Column::exact(EDGE_WIDTH));
-    }
+    let first_width = if has_edges { EDGE_WIDTH } else { NUMBER_WIDTH };
+    let mut builder = table(ui, "next poses").column(Column::exact(first_width));
     for width in WIDTHS {
         builder = builder.column(widgets::tables::number_column(width));
     }
     builder = builder.column(Column::exact(END_MARGIN));
     builder
         .header(theme::ROW_HEIGHT, |mut row| {
-            head(&mut row, "");
-            if has_edges {
-                head(&mut row, words::EDGE);
-            }
+            head(&mut row, if has_edges { words::EDGE } else { "" });
             for name in model::plan_heads(convention) {
                 number_head(&mut row, &name);
             }
@@ -94,12 +88,11 @@ fn poses(ui: &mut Ui, view: &View<'_>, plan: &Plan) {
                 row.col(|ui| {
                     ui.add_space(8.0);
                     ui.label(theme::dim(ui, (idx + 1).to_string()));
-                });
-                if has_edges {
-                    row.col(|ui| {
+                    if has_edges {
+                        ui.add_space(6.0);
                         ui.label(model::edge_symbol(station));
-                    });
-                }
+                    }
+                });
                 for cell in model::plan_row(station, convention, DECIMALS) {
                     number_cell(&mut row, cell);
                 }

@@ -34,7 +34,9 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
         match (outcome, results.and_then(|results| results.refusal.as_deref())) {
             (Some(Ok(solution)), _) => solution_section(ui, document, solution),
             (Some(Err(error)), _) => refusal(ui, &error.to_string()),
-            (None, Some(reason)) => refusal(ui, reason),
+            (None, Some(reason)) => {
+                ui.add(egui::Label::new(theme::dim(ui, reason)).wrap());
+            }
             (None, None) => {
                 ui.label(theme::dim(ui, words::NO_RESULTS));
             }
