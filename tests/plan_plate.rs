@@ -20,13 +20,18 @@ use handeye::watch::Unwatched;
 const MOUNTS: [Mount; 2] = [Mount::OnFlange, Mount::Fixed];
 const NUM_POINTS: usize = 400;
 
+/// A pin shows both flanks of its tip only from about above.
+const PIN_TILT_DEG: f64 = 12.0;
+
 fn options(kind: PartKind, seed: u64, mount: Mount) -> SimulationOptions {
+    let is_pin = kind == PartKind::Pin;
     SimulationOptions {
         seed,
         mount,
         target: SimulationTarget::Part(kind),
         num_points: NUM_POINTS,
-        num_stations: 6,
+        num_stations: if is_pin { 10 } else { 6 },
+        tilt_deg: if is_pin { PIN_TILT_DEG } else { 25.0 },
         num_steps: 1,
         ..SimulationOptions::default()
     }
@@ -122,8 +127,7 @@ fn planned_stations_bring_what_was_said() {
             let ratios: Vec<f64> = (1..=6)
                 .map(|seed| {
                     let mut session = simulate(&options(kind, seed, mount));
-                    // A pin shows both its flanks only from about above.
-                    let max_tilt_deg = if kind == PartKind::Pin { 20.0 } else { 30.0 };
+                    let max_tilt_deg = if kind == PartKind::Pin { PIN_TILT_DEG } else { 30.0 };
                     let limits = Limits { max_tilt_deg, ..Limits::default() };
                     let plan = planned(&session, &limits, 4);
                     let mut random = Random::new(seed, 1);
