@@ -14,7 +14,7 @@ use handeye::geometry::so3::exp;
 use handeye::geometry::{Rigid, Transform, Vec3, stats};
 use handeye::session::{self, Session, Target};
 use handeye::watch::Unwatched;
-use plate_cell::{Cell, error, simulated, simulated_tip, simulated_tip_with, simulated_with};
+use plate_cell::{Cell, bound_mm2, error, simulated, simulated_tip, simulated_tip_with, simulated_with};
 
 /// What double precision leaves of 600 mm after a solve.
 const EXACT_MM: f64 = 1e-6;
@@ -84,34 +84,52 @@ fn nine_elements_need_the_right_angle_between_columns() {
     }
 }
 
-/// From a rough mounting 10° and 20 mm off, every one of a thousand comes out; and the bundle is better.
+/// From a rough mounting 10° and 20 mm off, every one of a thousand comes out; and the bundle is better, whether the line
+/// crosses the edges squarely or slantwise.
+///
+/// At 45° the published method is less than 1.55 times as far off as any unbiased one has to be (the bench prints the bound), so
+/// the bundle can hardly be better there than the limit; it is at the bound.
 #[test]
 fn a_thousand_trials_from_a_rough_mounting() {
     /// A hundred times what the noise makes of it: another minimum, and nothing else, is so far off.
     const GROSS_MM: f64 = 30.0;
-    let cell = Cell::default();
-    let medians_mm = Method::PLATE.map(|method| {
-        let mut errors_mm: Vec<f64> = (1..=1000)
-            .map(|seed| {
-                let simulated = simulated(&cell, seed);
+    /// A thousand errors know their RMS to two or three per cent.
+    const AT_THE_BOUND: f64 = 1.05;
+    for line_to_edge_deg in [90.0, 45.0] {
+        let cell = Cell { line_to_edge_deg, ..Cell::default() };
+        let problems: Vec<_> = (1..=1000).map(|seed| simulated(&cell, seed)).collect();
+        let [mut published_mm, mut bundle_mm] = Method::PLATE.map(|method| {
+            let error_of = |(seed, simulated): (usize, &plate_cell::Simulated)| {
                 let solution = solve(&simulated.problem, method).expect("a solution");
                 let (error_mm, error_deg) = error(&solution.flange_from_sensor, &simulated.flange_from_sensor);
                 assert!(error_mm < GROSS_MM && error_deg < 5.0, "{method:?} {seed}: {error_mm} mm, {error_deg}°");
                 error_mm
-            })
-            .collect();
-        stats::median(&mut errors_mm)
-    });
-    let ratio = medians_mm[1] / medians_mm[0];
-    assert!(ratio <= 0.65, "bundle over published: {ratio}");
+            };
+            problems.iter().enumerate().map(error_of).collect::<Vec<f64>>()
+        });
+        let bound_mm = stats::rms(problems.iter().map(|simulated| bound_mm2(&cell, simulated).trace().sqrt()));
+        let over_bound = stats::rms(bundle_mm.iter().copied()) / bound_mm;
+        assert!(over_bound < AT_THE_BOUND, "line at {line_to_edge_deg}°: bundle over the bound {over_bound}");
+        let ratio = stats::median(&mut bundle_mm) / stats::median(&mut published_mm);
+        assert!(ratio <= 0.65, "line at {line_to_edge_deg}°: bundle over published {ratio}");
+    }
 }
 
-/// Stated or estimated: errors are as large as the σ promises.
+/// Stated or estimated: errors are as large as the σ promises. An estimated one carries the doubt in its noise, which few
+/// equations tell, and more so where a method's errors are not those that the scatter shows best: the published one's.
 #[test]
 fn errors_are_as_large_as_sigma_says() {
-    for cell in
-        [Cell { is_stated: true, ..noisy() }, noisy(), Cell { line_to_edge_deg: 45.0, is_stated: true, ..noisy() }]
-    {
+    let slantwise = Cell { line_to_edge_deg: 45.0, ..noisy() };
+    // A robot that errs in its orientations above all.
+    let turning = Cell { point_std_mm: 0.01, position_std_mm: 0.005, orientation_std_deg: 0.02, ..slantwise };
+    for cell in [
+        Cell { is_stated: true, ..noisy() },
+        noisy(),
+        Cell { is_stated: true, ..slantwise },
+        slantwise,
+        Cell { line_to_edge_deg: 45.0, ..Cell::default() },
+        turning,
+    ] {
         for method in Method::PLATE {
             let squares: Vec<[f64; 2]> = (1..=200)
                 .map(|seed| {
@@ -124,7 +142,8 @@ fn errors_are_as_large_as_sigma_says() {
                 .collect();
             let [errors, stated] = [0, 1].map(|idx| squares.iter().map(|pair| pair[idx]).sum::<f64>());
             let ratio = (errors / stated).sqrt();
-            assert!((0.9..1.1).contains(&ratio), "{method:?}, stated {}: {ratio}", cell.is_stated);
+            let least = if cell.is_stated || method == Method::PlateBundle { 0.88 } else { 0.8 };
+            assert!((least..1.1).contains(&ratio), "{method:?}, {cell:?}: {ratio}");
         }
     }
 }

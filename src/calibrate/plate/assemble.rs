@@ -4,7 +4,7 @@ use nalgebra::Vector6;
 
 use crate::calibrate::rotation_start::{PoseGeometry, rotation_span};
 use crate::calibrate::shared_warnings::{refused_captures, rotation_warnings, stands_out};
-use crate::calibrate::uncertainty::{doubt_in_the_noise, of_sensor};
+use crate::calibrate::uncertainty::{doubt_in_the_noise, of_sensor, point_by_sensor};
 use crate::calibrate::{
     Edge, Method, PlateFound, PlatePoint, PlateProblem, PlateReduced, RmsMax, Solution, SolveError, Starts, Warning,
 };
@@ -15,7 +15,7 @@ use super::descent::inverse_of;
 use super::measured::Measured;
 use super::noise::PlateNoise;
 use super::points::{EdgePoint, NUM_UNKNOWNS, PlateState, sensor_block};
-use super::refit::{PlateRefit, published};
+use super::refit::{PlateRefit, covariance_at, published};
 use super::{Candidate, RECOMMENDED_POINTS};
 
 /// Everything that a solution is made from.
@@ -62,15 +62,22 @@ impl Found<'_> {
         self.add_warnings(span, converged, num_iterations, &left_out, &in_sample);
         let reference_point = self.reference_point();
         // Without equations left over, the noise is only what was stated or usual: nothing was seen of it.
-        let uncertainty = (2 * reduced.points.len() > NUM_UNKNOWNS).then(|| {
-            let degrees_of_freedom = self.noise.degrees_of_freedom;
-            of_sensor(
+        let uncertainty = if 2 * reduced.points.len() > NUM_UNKNOWNS {
+            let by_sensor = point_by_sensor(reference_point);
+            let degrees_of_freedom = self.noise.degrees_of_freedom(|noise| {
+                let points = noise.weighed(&self.measured, &found.state);
+                let covariance = sensor_block(&covariance_at(self.method, &points, &found.state)?);
+                Ok((by_sensor * covariance * by_sensor.transpose()).trace())
+            })?;
+            Some(of_sensor(
                 &(sensor_block(&found.covariance) * doubt_in_the_noise(degrees_of_freedom)),
                 degrees_of_freedom,
                 &state.flange_from_sensor,
                 reference_point,
-            )
-        });
+            ))
+        } else {
+            None
+        };
         let points = self
             .measured
             .iter()
