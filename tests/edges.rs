@@ -351,6 +351,22 @@ fn every_point_has_its_class() {
     assert!((found.flanks[0].ends_mm[0][0] - 3.0).abs() < 2.0 * PITCH_MM, "{:?}", found.flanks[0]);
 }
 
+/// What is missing behind an edge is told, as far as more is missing than points drop out.
+#[test]
+fn a_gap_behind_a_step_is_measured() {
+    for (from_mm, to_mm) in [(3.0, 4.0), (1.0, 3.5)] {
+        let step = |x: f64| on_plate(x, -100.0, 3.0, Some(5.0)).filter(|_| !(from_mm..to_mm).contains(&x));
+        let found = extract(step, None).expect("a step");
+        let behind_mm = found.point_mm[0] + found.gap_mm[0];
+        assert!((behind_mm - to_mm).abs() < 1.5 * PITCH_MM, "{:?} {:?}", found.point_mm, found.gap_mm);
+        assert!(found.gap_mm[1].abs() < 0.02, "{:?}", found.gap_mm);
+    }
+    let closed = extract(|x| on_plate(x, -100.0, 3.0, Some(5.0)), None).expect("a step");
+    assert_eq!(closed.gap_mm, [0.0; 2]);
+    let free = extract(|x| on_plate(x, -100.0, 3.0, None), None).expect("an edge");
+    assert_eq!(free.gap_mm, [0.0; 2]);
+}
+
 #[test]
 fn the_same_profile_gives_the_same_bits() {
     let once = || {

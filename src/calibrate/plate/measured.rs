@@ -1,10 +1,11 @@
 //! The points that a plate's stations hold.
 
-use nalgebra::Matrix2;
+use nalgebra::{Matrix2, Vector2};
 
 use crate::calibrate::rotation_start::PoseGeometry;
 use crate::calibrate::{Edge, PlateProblem, PlateStation, Reading, SolveError};
-use crate::geometry::Rigid;
+use crate::fit::EdgeFit;
+use crate::geometry::{Rigid, Vec3};
 
 use super::points::EdgePoint;
 
@@ -20,6 +21,8 @@ pub(super) struct Measured<'a> {
     pub point: EdgePoint,
     /// Covariance of (x, z) by its profile, mm².
     pub covariance_mm2: Option<Matrix2<f64>>,
+    /// What is missing between it and the surface behind its edge, as its profile shows it, (x, z), mm.
+    pub gap_mm: Vector2<f64>,
     /// How many points were taken at its pose.
     pub num_at_pose: f64,
 }
@@ -45,10 +48,8 @@ pub(super) fn measured(problem: &PlateProblem) -> Result<(Vec<Measured<'_>>, Pos
                     point_in_sensor,
                     information: Matrix2::identity(),
                 },
-                covariance_mm2: match &capture.reading {
-                    Reading::Edge(edge) => Some(edge.covariance),
-                    Reading::Arc(_) | Reading::Refused(_) | Reading::Point(_) => None,
-                },
+                covariance_mm2: edge_of(&capture.reading).map(|edge| edge.covariance),
+                gap_mm: edge_of(&capture.reading).map_or_else(Vector2::zeros, |edge| edge.gap_mm.into()),
                 num_at_pose: 1.0,
             });
         }
@@ -65,6 +66,7 @@ pub(super) fn measured(problem: &PlateProblem) -> Result<(Vec<Measured<'_>>, Pos
         });
         return Err(SolveError::TooFewEdgePoints { found_p, found_q, needed: MIN_POINTS, refusal });
     }
+    place_in_holes(&mut points);
     let poses: Vec<Rigid> = points.iter().map(|measured| measured.point.base_from_flange).collect();
     for measured in &mut points {
         let same = poses.iter().filter(|pose| **pose == measured.point.base_from_flange).count();
@@ -74,4 +76,31 @@ pub(super) fn measured(problem: &PlateProblem) -> Result<(Vec<Measured<'_>>, Pos
     }
     let geometry = PoseGeometry::new(&poses)?;
     Ok((points, geometry))
+}
+
+fn edge_of(reading: &Reading) -> Option<&EdgeFit> {
+    match reading {
+        Reading::Edge(edge) => Some(edge),
+        Reading::Arc(_) | Reading::Refused(_) | Reading::Point(_) => None,
+    }
+}
+
+/// Where the points of an edge are missing up to the surface behind it, that surface is in the edge's shadow, and the edge is
+/// where its own points end. But a shadow falls at most stations; where hardly another shows one, a hole in the
+/// measurement hides the edge, which may be anywhere in it.
+fn place_in_holes(points: &mut [Measured<'_>]) {
+    /// One in so many of the other points of the edge with a gap of at least half the size make it a shadow.
+    const SHADOW_ONE_IN: usize = 3;
+    let gaps: Vec<(Edge, f64)> = points.iter().map(|measured| (measured.point.edge, measured.gap_mm.norm())).collect();
+    for (idx, measured) in points.iter_mut().enumerate() {
+        let (edge, size_mm) = gaps[idx];
+        let others = || gaps.iter().enumerate().filter(|(other, gap)| *other != idx && gap.0 == edge);
+        let alike = others().filter(|(_, gap)| gap.1 >= size_mm / 2.0).count();
+        let Some(covariance) = measured.covariance_mm2.as_mut().filter(|_| size_mm > 0.0) else { continue };
+        if SHADOW_ONE_IN * alike < others().count() {
+            let gap = measured.gap_mm;
+            measured.point.point_in_sensor += Vec3::new(gap.x, 0.0, gap.y) / 2.0;
+            *covariance += gap * gap.transpose() / 12.0;
+        }
+    }
 }

@@ -41,6 +41,7 @@ pub(super) fn fit(points: &Points, before: &Piece, after: &Piece, options: &Edge
         feature: Feature::Corner,
         point_mm,
         covariance,
+        gap_mm: [0.0; 2],
         flanks: vec![before.flank(points, End::Last), after.flank(points, End::First)],
         point_std_mm: rms(stds_mm),
         classes: pieces::classes(points, &flanks),

@@ -73,6 +73,9 @@ pub struct EdgeFit {
     pub point_mm: [f64; 2],
     /// Its covariance, mm². For a free edge the pitch of the points counts as well.
     pub covariance: Matrix2<f64>,
+    /// From the point along its flank to where the surface behind a step begins, (x, z), mm: the shadow of the step, or a hole
+    /// in the measurement that hides where the edge is. Zero where nothing is missing between them, or nothing follows.
+    pub gap_mm: [f64; 2],
     /// The flanks that it was found from: an edge and a step have one, a corner and a pointed tip two, a rounded tip none.
     pub flanks: Vec<Flank>,
     /// Noise of a point across its flank, mm.
