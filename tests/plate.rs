@@ -15,6 +15,7 @@ use handeye::diagnose::{Fault, Remedy, Severity, diagnose_any};
 use handeye::fit::{EdgeFit, Feature};
 use handeye::geometry::so3::exp;
 use handeye::geometry::{Rigid, Transform, Vec3, stats};
+use handeye::scene::Random;
 use handeye::session::{self, Session, Target};
 use handeye::watch::Unwatched;
 use nalgebra::Matrix2;
@@ -274,6 +275,161 @@ fn too_little_is_never_good() {
         }
         assert!(matches!(solve(&still, method), Err(SolveError::NoRotation { .. })));
         assert!(matches!(solve(&one_axis, method), Err(SolveError::RotationsAboutOneAxis { .. })));
+    }
+}
+
+/// The same for data that no cell delivers: nothing of it panics, and nothing is called good.
+#[test]
+fn spoilt_data_are_never_good() {
+    let cell = Cell { is_stated: true, point_std_mm: 0.001, spread_deg: 30.0, ..Cell::default() };
+    let plate = simulated(&cell, 1).problem;
+    let (tip, _) = simulated_tip(&Cell { num_points: [18, 0], ..cell }, 1);
+    type Spoil = fn(usize, &mut handeye::calibrate::Capture);
+    let spoils: [(&str, Spoil); 9] = [
+        ("one point is not a number", |idx, capture| {
+            if idx == 3 {
+                capture.reading = Reading::Point(Vec3::new(f64::NAN, 0.0, 170.0));
+            }
+        }),
+        ("one point is infinite", |idx, capture| {
+            if idx == 3 {
+                capture.reading = Reading::Point(Vec3::new(0.0, 0.0, f64::INFINITY));
+            }
+        }),
+        ("one point is huge", |idx, capture| {
+            if idx == 3 {
+                capture.reading = Reading::Point(Vec3::new(1e300, 0.0, 170.0));
+            }
+        }),
+        ("all points are huge", |idx, capture| {
+            let sign = if idx % 2 == 0 { 1.0 } else { -1.0 };
+            capture.reading = Reading::Point(Vec3::new(sign * 1e200, 0.0, 1e200));
+        }),
+        ("a pose is huge", |idx, capture| {
+            if idx == 3 {
+                capture.base_from_flange =
+                    Transform::from_parts(Vec3::x() * 1e300, capture.base_from_flange.rotation());
+            }
+        }),
+        ("a pose is not a number", |idx, capture| {
+            if idx == 3 {
+                capture.base_from_flange =
+                    Transform::from_parts(Vec3::x() * f64::NAN, capture.base_from_flange.rotation());
+            }
+        }),
+        ("all points are the same", |_, capture| capture.reading = Reading::Point(Vec3::new(1.0, 0.0, 170.0))),
+        ("all poses are the same", |_, capture| {
+            capture.base_from_flange = Transform::from_parts(Vec3::new(600.0, 0.0, 300.0), exp(Vec3::x() * 3.0));
+        }),
+        ("all poses stand at one place", |_, capture| {
+            capture.base_from_flange =
+                Transform::from_parts(Vec3::new(600.0, 0.0, 300.0), capture.base_from_flange.rotation());
+        }),
+    ];
+    for (name, spoil) in spoils {
+        let mut plate = plate.clone();
+        let mut tip = tip.clone();
+        let of_plate = plate.stations.iter_mut().map(|station| &mut station.station);
+        for (idx, station) in of_plate.enumerate().chain(tip.stations.iter_mut().enumerate()) {
+            spoil(idx, &mut station.captures[0]);
+        }
+        for problem in [Problem::Plate(plate), Problem::Point(tip)] {
+            for method in problem.methods() {
+                if let Ok(solution) = problem.solve(*method) {
+                    assert_ne!(judge(&solution).0, Verdict::Good, "{method:?}: {name}: {:?}", solution.warnings);
+                    let numbers = solution.flange_from_sensor.translation_mm();
+                    assert!(numbers.iter().all(|value| value.is_finite()), "{method:?}: {name}");
+                    // Nothing that only looks solved.
+                    let _ = validate(&solution);
+                }
+            }
+            if let Ok(joint) = solve_joint(std::slice::from_ref(&problem)) {
+                assert!(joint.uncertainty.workspace_point_std_mm.is_finite(), "{name}");
+            }
+        }
+    }
+}
+
+/// Fewer stations than they seem: duplicates add nothing.
+#[test]
+fn duplicates_are_no_further_stations() {
+    let cell = Cell { num_points: [4, 4], ..noisy() };
+    for method in Method::PLATE {
+        for seed in 1..=10 {
+            let once = simulated(&cell, seed).problem;
+            let mut thrice = once.clone();
+            thrice.stations = (0..3).flat_map(|_| once.stations.clone()).collect();
+            let [alone, repeated] = [&once, &thrice].map(|problem| solve(problem, method).expect("a solution"));
+            let std = |solution: &Solution| {
+                solution.uncertainty.as_ref().expect("something is left over").workspace_point_std_mm
+            };
+            let ratio = std(&repeated) / std(&alone);
+            assert!(ratio > 0.6, "{method:?}, {seed}: σ shrinks to {ratio} by copies");
+            assert!(judge(&repeated).0 > Verdict::Good, "{method:?}, {seed}");
+        }
+    }
+}
+
+/// All points of an edge at one place show no direction of it, but the right angle does: what is said of the result holds.
+#[test]
+fn points_of_an_edge_at_one_place_are_judged_by_what_they_tell() {
+    let cell = Cell { is_stated: true, spread_deg: 30.0, ..Cell::default() };
+    for seed in 1..=5 {
+        let mut problem = simulated(&cell, seed).problem;
+        let truth = simulated(&cell, seed);
+        let place = problem
+            .stations
+            .iter()
+            .find(|station| station.edge == Edge::P)
+            .map(|station| {
+                let capture = &station.station.captures[0];
+                let point = capture.reading.point_in_sensor_mm().expect("a point");
+                (*capture.base_from_flange.rigid() * truth.flange_from_sensor).transform_point(&point.into()).coords
+            })
+            .expect("a point on p");
+        for station in problem.stations.iter_mut().filter(|station| station.edge == Edge::P) {
+            let capture = &mut station.station.captures[0];
+            let point = capture.reading.point_in_sensor_mm().expect("a point");
+            let pose = *capture.base_from_flange.rigid();
+            let now = (pose * truth.flange_from_sensor).transform_point(&point.into()).coords;
+            capture.base_from_flange = Transform::from_parts(pose.translation.vector + place - now, pose.rotation);
+        }
+        for method in Method::PLATE {
+            if let Ok(solution) = solve(&problem, method) {
+                let known = solution.uncertainty.as_ref().expect("something is left over");
+                let off_in_stds = point_error_mm(&solution, &truth.flange_from_sensor) / known.workspace_point_std_mm;
+                assert!(off_in_stds < 3.0, "{method:?}, {seed}: {off_in_stds} σ off, {known:?}");
+            }
+        }
+    }
+}
+
+/// Readings at one pose share its error: many of them are no more than one at many poses, and copies no more than one.
+#[test]
+fn repeated_readings_are_weighed_as_what_they_are() {
+    for (is_copy, num_captures) in [(true, 5), (false, 1), (false, 5)] {
+        let mut squares = [0.0; 2];
+        for seed in 1..=100 {
+            let mut simulated = simulated(&noisy(), seed);
+            let mut random = Random::new(seed, 9);
+            for station in &mut simulated.problem.stations {
+                let first = station.station.captures[0].clone();
+                let point = first.reading.point_in_sensor_mm().expect("a point");
+                station.station.captures.extend((1..num_captures).map(|_| {
+                    let noise = if is_copy { Vec3::zeros() } else { random.normal3() * 0.042 };
+                    let reading = Reading::Point(point + Vec3::new(noise.x, 0.0, noise.z));
+                    handeye::calibrate::Capture { reading, ..first.clone() }
+                }));
+            }
+            let solution = solve(&simulated.problem, Method::PlateBundle).expect("a solution");
+            assert_eq!(solution.plate.as_ref().expect("a plate").points.len(), 18 * num_captures);
+            let known = solution.uncertainty.as_ref().expect("something is left over");
+            squares[0] += point_error_mm(&solution, &simulated.flange_from_sensor).powi(2);
+            squares[1] += known.workspace_point_std_mm.powi(2);
+        }
+        let ratio = (squares[0] / squares[1]).sqrt();
+        // A hundred seeds know it to a tenth; σ carries the doubt in an estimated noise.
+        assert!((0.75..1.15).contains(&ratio), "copies {is_copy}, {num_captures}: error over σ {ratio}");
     }
 }
 

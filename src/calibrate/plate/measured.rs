@@ -3,8 +3,8 @@
 use nalgebra::{Matrix2, Vector2};
 
 use crate::calibrate::rotation_start::PoseGeometry;
-use crate::calibrate::{Edge, PlateProblem, PlateStation, Reading, SolveError};
-use crate::fit::EdgeFit;
+use crate::calibrate::{Capture, Edge, PlateProblem, PlateStation, Reading, SolveError};
+use crate::fit::{EdgeFit, Feature};
 use crate::geometry::{Rigid, Vec3};
 
 use super::points::EdgePoint;
@@ -12,15 +12,18 @@ use super::points::EdgePoint;
 /// With three points an edge the unknowns are just as many as the equations.
 pub const MIN_POINTS: usize = 3;
 
-/// A point with where it is from.
-#[derive(Clone, Copy, Debug)]
+/// A point with where it is from: the mean of what a station read at one pose.
+#[derive(Clone, Debug)]
 pub(super) struct Measured<'a> {
     pub station: &'a PlateStation,
-    pub capture_idx: usize,
+    /// The captures that it was read in, with what each read, in the sensor frame, mm.
+    pub captures: Vec<(usize, Vec3)>,
     /// Its information is still that of a unit weight.
     pub point: EdgePoint,
-    /// Covariance of (x, z) by its profile, mm².
+    /// Covariance of (x, z) by its profiles, mm².
     pub covariance_mm2: Option<Matrix2<f64>>,
+    /// How many readings it is the mean of; copies are one.
+    pub num_readings: f64,
     /// What is missing between it and the surface behind its edge, as its profile shows it, (x, z), mm.
     pub gap_mm: Vector2<f64>,
     /// How many points were taken at its pose.
@@ -35,23 +38,20 @@ pub(super) fn measured(problem: &PlateProblem) -> Result<(Vec<Measured<'_>>, Pos
     let mut points: Vec<Measured<'_>> = Vec::new();
     let mut num_stations = 0;
     for station in &problem.stations {
+        let read: Vec<Read> = station.station.captures.iter().enumerate().filter_map(Read::of).collect();
+        let mut poses: Vec<Rigid> = Vec::new();
+        for pose in read.iter().map(|read| read.base_from_flange) {
+            if !poses.contains(&pose) {
+                poses.push(pose);
+            }
+        }
         let before = points.len();
-        for (capture_idx, capture) in station.station.captures.iter().enumerate() {
-            let Some(point_in_sensor) = capture.reading.point_in_sensor_mm() else { continue };
-            points.push(Measured {
-                station,
-                capture_idx,
-                point: EdgePoint {
-                    station: num_stations,
-                    edge: station.edge,
-                    base_from_flange: *capture.base_from_flange.rigid(),
-                    point_in_sensor,
-                    information: Matrix2::identity(),
-                },
-                covariance_mm2: edge_of(&capture.reading).map(|edge| edge.covariance),
-                gap_mm: edge_of(&capture.reading).map_or_else(Vector2::zeros, |edge| edge.gap_mm.into()),
-                num_at_pose: 1.0,
-            });
+        for pose in poses {
+            let here: Vec<&Read> = read.iter().filter(|read| read.base_from_flange == pose).collect();
+            let found = merged(station, num_stations, &here);
+            if !points.iter().any(|other| is_copy(other, &found)) {
+                points.push(found);
+            }
         }
         num_stations += usize::from(points.len() > before);
     }
@@ -78,11 +78,72 @@ pub(super) fn measured(problem: &PlateProblem) -> Result<(Vec<Measured<'_>>, Pos
     Ok((points, geometry))
 }
 
-fn edge_of(reading: &Reading) -> Option<&EdgeFit> {
-    match reading {
-        Reading::Edge(edge) => Some(edge),
-        Reading::Arc(_) | Reading::Refused(_) | Reading::Point(_) => None,
+/// What a capture says.
+struct Read<'a> {
+    capture_idx: usize,
+    base_from_flange: Rigid,
+    point: Vec3,
+    edge: Option<&'a EdgeFit>,
+}
+
+impl<'a> Read<'a> {
+    fn of((capture_idx, capture): (usize, &'a Capture)) -> Option<Self> {
+        let point = capture.reading.point_in_sensor_mm()?;
+        let edge = match &capture.reading {
+            Reading::Edge(edge) => Some(edge.as_ref()),
+            Reading::Arc(_) | Reading::Refused(_) | Reading::Point(_) => None,
+        };
+        Some(Self { capture_idx, base_from_flange: *capture.base_from_flange.rigid(), point, edge })
     }
+
+    fn gap_mm(&self) -> Vector2<f64> {
+        self.edge.map_or_else(Vector2::zeros, |edge| edge.gap_mm.into())
+    }
+}
+
+/// What a station read at one pose as one point. The pose's error is common to all of it, and the sensor's noise that of
+/// the mean; the pitch of the points, which blurs where a surface ends, is common to all as well.
+fn merged<'a>(station: &'a PlateStation, station_idx: usize, here: &[&Read<'a>]) -> Measured<'a> {
+    // A hole over the edge need not be in all profiles.
+    let least_gap_mm = here.iter().map(|read| read.gap_mm().norm()).fold(f64::INFINITY, f64::min);
+    let mut distinct: Vec<&Read> = Vec::new();
+    for read in here.iter().filter(|read| read.gap_mm().norm() <= 2.0 * least_gap_mm) {
+        if !distinct.iter().any(|other| other.point == read.point) {
+            distinct.push(read);
+        }
+    }
+    // Not a number is no distance: then the reading is passed on as it is, for the solver to refuse.
+    let used = if distinct.is_empty() { here } else { distinct.as_slice() };
+    #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 captures")]
+    let num_readings = used.len() as f64;
+    let covariance = |edge: &EdgeFit| {
+        let is_of_pitch = matches!(edge.feature, Feature::Edge | Feature::Step);
+        edge.covariance * (if is_of_pitch { 1.0 } else { 1.0 / num_readings })
+    };
+    let covariances: Option<Vec<Matrix2<f64>>> = used.iter().map(|read| read.edge.map(covariance)).collect();
+    Measured {
+        station,
+        captures: here.iter().map(|read| (read.capture_idx, read.point)).collect(),
+        point: EdgePoint {
+            station: station_idx,
+            edge: station.edge,
+            base_from_flange: here.first().map_or_else(Rigid::identity, |read| read.base_from_flange),
+            point_in_sensor: used.iter().map(|read| read.point).sum::<Vec3>() / num_readings,
+            information: Matrix2::identity(),
+        },
+        covariance_mm2: covariances.map(|all| all.iter().sum::<Matrix2<f64>>() / num_readings),
+        num_readings,
+        gap_mm: used.iter().map(|read| read.gap_mm()).sum::<Vector2<f64>>() / num_readings,
+        num_at_pose: 1.0,
+    }
+}
+
+/// Whether a point is another one entered once more.
+fn is_copy(one: &Measured<'_>, other: &Measured<'_>) -> bool {
+    let (one, other) = (&one.point, &other.point);
+    one.edge == other.edge
+        && one.base_from_flange == other.base_from_flange
+        && one.point_in_sensor == other.point_in_sensor
 }
 
 /// Where the points of an edge are missing up to the surface behind it, that surface is in the edge's shadow, and the edge is

@@ -160,7 +160,9 @@ impl PlateNoise {
                 // The poses are inverted: what is called base here is the flange, and turns about its own origin.
                 Mount::Fixed => in_base,
             });
-        let in_plane = measured.covariance_mm2.unwrap_or_else(|| Matrix2::identity() * self.variances[2]);
+        let in_plane = measured
+            .covariance_mm2
+            .unwrap_or_else(|| Matrix2::identity() * (self.variances[2] / measured.num_readings));
         let in_sensor =
             Mat3::new(in_plane[(0, 0)], 0.0, in_plane[(0, 1)], 0.0, 0.0, 0.0, in_plane[(1, 0)], 0.0, in_plane[(1, 1)]);
         let parts = [

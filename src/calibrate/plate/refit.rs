@@ -15,7 +15,7 @@ use super::{bundle, orthogonal};
 pub struct PlateReduced {
     /// The method, which solves again as it solved.
     pub method: Method,
-    /// In the order of [`super::super::PlateFound::points`].
+    /// In the order of stations and poses.
     pub points: Vec<EdgePoint>,
     /// Number of stations that the points are of.
     pub num_stations: usize,
