@@ -382,7 +382,8 @@ fn middle(points: &Points, cluster: &[usize], options: &EdgeOptions) -> Option<E
     let of_end = 1.0 / 12.0 + (1.0 - seen_part) / (seen_part * seen_part);
     let of_pitch = points.pitch_mm * points.pitch_mm * of_end / 2.0;
     // Seen aslant it may as well be one side of a pointed tip, with its top at the upper end.
-    let of_side = width_mm(points, &seen) / 2.0 * slope.abs() / STEEPEST_TOP;
+    let beyond_noise = (slope * slope - std_mm * std_mm / straight.spread_mm2).max(0.0).sqrt();
+    let of_side = width_mm(points, &seen) / 2.0 * beyond_noise / STEEPEST_TOP;
     if of_side > LOOSEST_MIDDLE_PITCHES * points.pitch_mm {
         return None;
     }
