@@ -8,7 +8,7 @@ use nalgebra::{Matrix2, Matrix3, Vector3};
 
 use crate::calibrate::{AboveStated, Mount, NoiseModel, PlateProblem, SolveError};
 use crate::geometry::so3::hat;
-use crate::geometry::{Mat3, stats};
+use crate::geometry::{Mat3, Rigid, Vec3, stats};
 
 use super::components::{Components, Found, NUM_COMPONENTS, PointModel};
 use super::measured::Measured;
@@ -153,13 +153,7 @@ impl PlateNoise {
         let across = state.across_in_base(point.edge);
         let of_sensor = across * point.base_from_sensor(&state.flange_from_sensor);
         let in_base = point.in_base(&state.flange_from_sensor);
-        let lever = across
-            * hat(match self.mount {
-                // An error of the flange's orientation turns what the sensor sees about the flange.
-                Mount::OnFlange => in_base - point.base_from_flange.translation.vector,
-                // The poses are inverted: what is called base here is the flange, and turns about its own origin.
-                Mount::Fixed => in_base,
-            });
+        let lever = across * lever(in_base, &point.base_from_flange, self.mount);
         let in_plane = measured
             .covariance_mm2
             .unwrap_or_else(|| Matrix2::identity() * (self.variances[2] / measured.num_readings));
@@ -179,4 +173,21 @@ impl PlateNoise {
         }
         PointModel { off_edge: state.off_edge(point), by_unknowns: state.by_unknowns(point), known, open }
     }
+}
+
+/// How a point in the base follows a turn of the pose, up to the sign.
+fn lever(in_base: Vec3, base_from_flange: &Rigid, mount: Mount) -> Mat3 {
+    hat(match mount {
+        // An error of the flange's orientation turns what the sensor sees about the flange.
+        Mount::OnFlange => in_base - base_from_flange.translation.vector,
+        // The poses are inverted: what is called base here is the flange, and turns about its own origin.
+        Mount::Fixed => in_base,
+    })
+}
+
+/// Covariance (mm²) of a point in the base by the noise of the robot's pose: variances of its position (mm²) and orientation
+/// (rad²).
+pub(crate) fn of_pose(position: f64, orientation: f64, in_base: Vec3, base_from_flange: &Rigid, mount: Mount) -> Mat3 {
+    let lever = lever(in_base, base_from_flange, mount);
+    Mat3::identity() * position + lever * lever.transpose() * orientation
 }
