@@ -17,7 +17,7 @@ use handeye::device::{
     DeviceError, Endpoint, LinkState, MotionRefusal, ProfileReading, Readiness, RobotKind, RobotReport, RobotSetup,
     RoutineEnd, SearchEnd, SearchPhase, SearchReport, SensorKind, SensorSetup,
 };
-use handeye::fit::{ArcOptions, ArcRefusal, extract_arc};
+use handeye::fit::{ArcOptions, ArcRefusal, Sought};
 use handeye::geometry::{Profile, Transform, Vec3};
 use handeye::plan::PlannedStation;
 use handeye::session::{self, Session, Target, samples};
@@ -55,6 +55,7 @@ impl Bench {
             has_solution: false,
             outlook: None,
             has_other_mounting: false,
+            results: None,
         };
         let (memory, state) = (&mut bench.memory, &mut bench.state);
         capture::show_view(ui, view, memory, state, &mut bench.commands, &mut bench.actions);
@@ -115,9 +116,10 @@ fn live(section_mm: f64) -> LiveProfile {
     let noisy = |(idx, x): (usize, &f64)| Some(z_at(x) + 0.004 * f64::from(u8::try_from(idx * 37 % 11).unwrap_or(0)));
     let z_mm: Vec<_> = x_mm.iter().enumerate().map(noisy).collect();
     let profile = Arc::new(Profile::new(x_mm, &z_mm).expect("valid"));
-    let arc = extract_arc(&profile, &ArcOptions { ball_radius_mm: 15.0, profile_std_mm: None }).map(Arc::new);
+    let ball = Sought::Arc(ArcOptions { ball_radius_mm: 15.0, profile_std_mm: None });
+    let found = ball.find(&profile);
     let reading = ProfileReading { profile, trigger_count: 7, received_at: Instant::now() };
-    LiveProfile { reading, arc, rate_hz: 30.0 }
+    LiveProfile { reading, found, rate_hz: 30.0 }
 }
 
 fn robot_setup(kind: RobotKind) -> RobotSetup {
@@ -160,7 +162,7 @@ fn proposal(refusal: Option<MotionRefusal>) -> Proposal {
         workspace_point_std_mm: Some(0.12),
     };
     let reason = "tilted 18° towards 60°: it brings σ of the workspace point from 0.13 to about 0.12 mm".to_owned();
-    Proposal { station, reason, distance_mm: 82.0, turn_deg: 31.0, refusal }
+    Proposal { station, edge: None, reason, distance_mm: 82.0, turn_deg: 31.0, refusal }
 }
 
 /// A search that is past the peak.
@@ -210,7 +212,7 @@ fn every_button_asks_for_exactly_its_command() {
         (paused, words::RESUME_NAME, CellCommand::ResumeRun),
         (replaying, words::END_REPLAY, CellCommand::EndReplay),
         (CellView { is_practice: true, ..armed() }, words::END_PRACTICE, CellCommand::EndPractice),
-        (CellView::default(), words::PRACTISE_SHORT, CellCommand::Practise),
+        (CellView::default(), words::PRACTISE_SHORT, CellCommand::Practise(None)),
         (CellView { run: Some(RunView { num_done: 8, ..RUN }), ..armed() }, words::DISARM, CellCommand::Arm(false)),
     ] {
         assert_eq!(Bench::new(view).asked_by(name), cell(command), "{name}");
@@ -318,7 +320,7 @@ fn states_are_told_in_words() {
         latest: Some(report(Readiness::ReadOnly)),
     };
     let refusal = MotionRefusal::TooFar { found_mm: 512.0, max_mm: 400.0 };
-    let no_arc = LiveProfile { arc: Err(ArcRefusal::TooFewPoints { found: 3, needed: 20 }), ..live(13.5) };
+    let no_arc = LiveProfile { found: Err(ArcRefusal::TooFewPoints { found: 3, needed: 20 }.into()), ..live(13.5) };
     let reason = ArcRefusal::TooFewPoints { found: 3, needed: 20 }.to_string();
     let never_still = RoutineEnd::NeverStill { moved_mm: Some(0.4) };
     for (view, sentence) in [
@@ -587,7 +589,7 @@ fn view(window: &Window) -> &CellView {
 
 fn is_connected(window: &Window) -> bool {
     let cell = view(window);
-    cell.robot.state == LinkState::Ready && cell.live.as_ref().is_some_and(|live| live.arc.is_ok())
+    cell.robot.state == LinkState::Ready && cell.live.as_ref().is_some_and(|live| live.found.is_ok())
 }
 
 fn click(harness: &mut Harness<'static, Window>, name: &str) {

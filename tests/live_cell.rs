@@ -605,7 +605,7 @@ fn a_recorded_session_plays_through_the_panel_and_changes_nothing() {
     assert!((peak_mm(&report) - peak_mm(&found)).abs() < 0.2, "{} {}", peak_mm(&report), peak_mm(&found));
     let last = before.stations[0].captures.last().expect("captures");
     assert_eq!(cell.robot.latest.as_ref().expect("played").base_from_flange, last.base_from_flange);
-    assert!(cell.live.as_ref().expect("played").arc.is_ok());
+    assert!(cell.live.as_ref().expect("played").found.is_ok());
     assert_eq!(bench.session(), &before);
     bench.cell(CellCommand::EndReplay);
     let cell = bench.workbench.cell();

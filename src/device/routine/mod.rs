@@ -103,8 +103,8 @@ impl RoutineEnd {
 pub enum Measurement {
     /// One settled profile.
     Profile,
-    /// The search for the largest arc.
-    LargestArc(SearchSettings),
+    /// The search for the largest arc of a ball.
+    LargestArc(SearchSettings, ArcOptions),
 }
 
 /// What a routine is to do.
@@ -116,8 +116,6 @@ pub struct Task {
     pub measurement: Option<Measurement>,
     /// When a capture counts.
     pub settle: SettleSettings,
-    /// The ball, for the search.
-    pub ball: ArcOptions,
     /// The permission to move; without it nothing moves.
     pub arming: Option<Arming>,
 }

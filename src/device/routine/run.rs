@@ -11,7 +11,7 @@ use crate::device::robot::arrival::check_arrival;
 use crate::device::safety::MotionRefusal;
 use crate::device::search::{Search, SearchNext, SearchSettings, StepSeen};
 use crate::device::worker::{RobotClient, SensorClient};
-use crate::fit::extract_arc;
+use crate::fit::{ArcOptions, extract_arc};
 use crate::geometry::{Base, Flange, Transform};
 use crate::watch::Wake;
 
@@ -105,7 +105,7 @@ impl Runner {
                 self.tell(RoutineEvent::Captured(capture));
                 Ok(RoutineEnd::Done)
             }
-            Some(Measurement::LargestArc(settings)) => self.search(settings),
+            Some(Measurement::LargestArc(settings, ball)) => self.search(settings, ball),
         }
     }
 
@@ -116,9 +116,9 @@ impl Runner {
         Ok(check_arrival("Robot", target, &arrived.base_from_flange)?)
     }
 
-    fn search(&self, settings: &SearchSettings) -> Result<RoutineEnd, Break> {
+    fn search(&self, settings: &SearchSettings, ball: &ArcOptions) -> Result<RoutineEnd, Break> {
         let first = self.check_search(settings)?;
-        let mut search = Search::new(settings, self.task.ball.ball_radius_mm);
+        let mut search = Search::new(settings, ball.ball_radius_mm);
         let mut previous_mm = None;
         loop {
             let commanded_mm = match search.next() {
@@ -140,7 +140,7 @@ impl Runner {
             previous_mm = Some(commanded_mm);
             self.tell(RoutineEvent::Settling);
             let capture = self.capture(step_mm)?;
-            let radius_and_std_mm = extract_arc(&capture.profile, &self.task.ball)
+            let radius_and_std_mm = extract_arc(&capture.profile, ball)
                 .map(|arc| [arc.circle.radius_mm, arc.std_mm()[2]])
                 .map_err(|refusal| refusal.to_string());
             let travelled_mm = settings.travelled_mm(first.rigid(), capture.base_from_flange.rigid());

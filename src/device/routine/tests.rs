@@ -16,13 +16,13 @@ const PATIENCE: Duration = Duration::from_secs(30);
 
 fn task(cell: &FakeCell, measurement: Measurement) -> Task {
     let settle = SettleSettings { settle_ms: 1, ..SettleSettings::default() };
-    let ball = ArcOptions { ball_radius_mm: RADIUS_MM, profile_std_mm: None };
     let arming = Arming { base_from_flange: cell.world().pose, limits: MotionLimits::default() };
-    Task { go_to: None, measurement: Some(measurement), settle, ball, arming: Some(arming) }
+    Task { go_to: None, measurement: Some(measurement), settle, arming: Some(arming) }
 }
 
 fn search() -> Measurement {
-    Measurement::LargestArc(SearchSettings::default())
+    let ball = ArcOptions { ball_radius_mm: RADIUS_MM, profile_std_mm: None };
+    Measurement::LargestArc(SearchSettings::default(), ball)
 }
 
 struct Running {

@@ -6,11 +6,9 @@ use crate::plan::PlannedStation;
 use super::plural;
 
 /// A capture has nowhere to go.
-pub const NO_SESSION: &str =
-    "nothing was captured: no session is open. Begin one for a ball of your radius, then capture again";
-/// The open session is for something else.
-pub const NOT_A_BALL: &str =
-    "nothing was captured: the open session's target is no ball. Begin a session for a ball, then capture again";
+pub const NO_SESSION: &str = "nothing was captured: no session is open. Begin one for your target, then capture again";
+/// From the open session's target nothing is calibrated.
+pub const NOTHING_TO_CAPTURE: &str = "nothing was captured: the open session is for no ball, plate or tip. Begin a session for one of these, then capture again";
 /// One thing at a time.
 pub const BUSY: &str = "the cell is at work: stop it first, or wait until it has ended";
 /// What holds for a routine holds to its end.

@@ -28,7 +28,9 @@ const SIDE_WIDTH: f32 = 84.0;
 pub fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     let mut settings = desk.view.cell.settings;
     let mut fields = std::mem::take(&mut desk.state.fields);
-    let radius_mm = desk.view.ball_radius_mm().unwrap_or(f64::INFINITY);
+    // Without a session it is not known yet what for the settings are.
+    let radius_mm =
+        if desk.view.is_of_edges() { None } else { Some(desk.view.ball_radius_mm().unwrap_or(f64::INFINITY)) };
     let problems = problems(&settings, radius_mm, desk.view.cell.robot.latest.as_ref());
     fields.mark(problems.iter().flat_map(|problem| problem.fields).copied().collect());
     card(
@@ -44,9 +46,11 @@ pub fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
                     hint(ui, words::IN_USE);
                 }
                 let summary = search_summary(&settings);
-                section(ui, words::SEARCH, &summary, None, |ui| {
-                    ui.add_enabled_ui(is_free, |ui| search(ui, &mut fields, &mut settings));
-                });
+                if radius_mm.is_some() {
+                    section(ui, words::SEARCH, &summary, None, |ui| {
+                        ui.add_enabled_ui(is_free, |ui| search(ui, &mut fields, &mut settings));
+                    });
+                }
                 let limits = &settings.limits;
                 let summary = words::limits_summary(
                     &fixed(limits.max_speed_mm_s, 0),

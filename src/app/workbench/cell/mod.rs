@@ -68,7 +68,8 @@ impl Workbench {
             }
             CellCommand::DisconnectRobot => self.disconnect_robot(),
             CellCommand::DisconnectSensor => self.disconnect_sensor(),
-            CellCommand::Practise => self.practise(),
+            CellCommand::Practise(part) => self.practise(part),
+            CellCommand::JogToEdge(edge) => self.jog_to_edge(edge),
             CellCommand::EndPractice => self.end_practice(),
             CellCommand::Arm(true) => self.arm(),
             CellCommand::Arm(false) => self.disarm(),

@@ -6,7 +6,7 @@ use crate::app::cell::{Proposal, RoughMounting, StationRoutine};
 use crate::app::jobs::{JobOutcome, Slot};
 use crate::calibrate::{Noise, Reading as MeasuredReading};
 use crate::device::{LinkState, MotionRefusal, SearchSettings};
-use crate::fit::ArcFit;
+use crate::fit::{ArcFit, Found, Sought};
 use crate::geometry::{Base, Flange, Profile, Rigid, Transform, Vec3};
 use crate::plan::{MeasuredStation, PlannedStation, RoughCell, View};
 use crate::session::{Capture, Reading, Station};
@@ -155,7 +155,7 @@ impl Workbench {
             Some(angle_deg) => format!("{reason}. {}", words::travel_is_oblique(angle_deg)),
             None => reason,
         };
-        let mut proposal = Proposal { station, reason, distance_mm: 0.0, turn_deg: 0.0, refusal: None };
+        let mut proposal = Proposal { station, edge: None, reason, distance_mm: 0.0, turn_deg: 0.0, refusal: None };
         self.check_against_robot(&mut proposal);
         proposal
     }
@@ -178,7 +178,8 @@ impl Workbench {
     /// The search that a run makes at each station, if that is what it makes.
     fn search_at_stations(&self) -> Option<SearchSettings> {
         let settings = &self.cell.view.settings;
-        (settings.routine == StationRoutine::LargestArc).then_some(settings.search)
+        let is_ball = self.sought().is_some_and(|sought| sought.ball().is_some());
+        (is_ball && settings.routine == StationRoutine::LargestArc).then_some(settings.search)
     }
 
     /// The robot, the switch or the limits may have changed since.
@@ -218,9 +219,10 @@ impl Workbench {
         if let (Some(plan), Some((_, problem, results))) = (self.current_plan(), self.ball_case()) {
             return Ok(Basis::Solved { problem, results, planned: plan.clone() });
         }
-        let (Some(document), Some(ball)) = (&self.document, self.ball()) else {
+        let (Some(document), Some(sought)) = (&self.document, self.sought()) else {
             return Err(words::NO_SESSION.to_owned());
         };
+        let Sought::Arc(ball) = sought else { return Err(words::NO_PROPOSAL.to_owned()) };
         let session = &document.session;
         let mounting = self.cell.view.settings.mounting.ok_or_else(|| words::NO_MOUNTING.to_owned())?;
         let flange_from_sensor = rigid(&mounting);
@@ -286,7 +288,7 @@ impl Workbench {
         if found.is_empty()
             && let (Some(live), Some(report)) = (&view.live, &view.robot.latest)
             && view.robot.state == LinkState::Ready
-            && let Ok(arc) = &live.arc
+            && let Ok(Found::Arc(arc)) = &live.found
         {
             let profile = &live.reading.profile;
             found.push(Seen { base_from_flange: report.base_from_flange, arc, profile, peak: None });

@@ -100,8 +100,8 @@ impl Workbench {
             is_paused: false,
             stage: Stage::Between,
         };
-        // Where the robot stands there may be a ball in view already.
-        if self.cell.view.live.as_ref().is_some_and(|live| live.arc.is_ok()) && !self.stands_at_a_station() {
+        // Where the robot stands the target may be in view already.
+        if self.cell.view.live.as_ref().is_some_and(|live| live.found.is_ok()) && !self.stands_at_a_station() {
             if let Err(reason) = self.measure_station(None, self.cell.view.settings.routine) {
                 self.notify_of_cell(NoticeKind::Error, reason);
                 return;
