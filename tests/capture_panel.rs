@@ -156,6 +156,7 @@ fn proposal(refusal: Option<MotionRefusal>) -> Proposal {
             Vec3::new(404.1, 123.5, 188.1),
             nalgebra::UnitQuaternion::from_euler_angles(2.8, 0.13, 1.25),
         ),
+        edge: None,
         tilt_deg: 18.0,
         azimuth_deg: 60.0,
         spin_deg: -30.0,

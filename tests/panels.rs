@@ -519,6 +519,7 @@ fn made_up(findings: Vec<Finding>) -> MadeUp {
             Vec3::new(1012.3 + f64::from(idx), -204.5, 456.7),
             nalgebra::UnitQuaternion::from_euler_angles(3.1, 0.1 * f64::from(idx), -1.2),
         ),
+        edge: None,
         tilt_deg: 28.0,
         azimuth_deg: 40.0 * f64::from(idx),
         spin_deg: -90.0,

@@ -115,7 +115,7 @@ fn profile(session: &Session, ball: Vec3, noise: &mut Noise) -> Profile {
 
 fn planned(session: &Session, limits: &Limits, num: usize) -> (Plan, Solution) {
     let (problem, solution) = solved(session);
-    (next_stations(&problem, &solution, limits, num).expect("a plan"), solution)
+    (next_stations(&solution, limits, num).expect("a plan"), solution)
 }
 
 fn pose(station: &PlannedStation) -> Rigid {
@@ -331,7 +331,7 @@ fn a_plan_from_nothing_makes_a_calibration() {
 fn impossible_limits_and_cells_are_refused() {
     let session = simulate(&options(1, Mount::OnFlange));
     let (problem, solution) = solved(&session);
-    let refused = |limits: &Limits| next_stations(&problem, &solution, limits, 1).expect_err("impossible");
+    let refused = |limits: &Limits| next_stations(&solution, limits, 1).expect_err("impossible");
     for limits in [
         Limits { max_tilt_deg: 0.0, max_spin_deg: 0.0, ..Limits::default() },
         Limits { standoff_mm: Some([100.0, 90.0]), ..Limits::default() },

@@ -95,7 +95,7 @@ fn planned(args: &PlanArgs, session: &Session) -> Result<(Plan, Option<Method>),
         if let Some(first) = diagnosis.findings.first().filter(|_| !diagnosis.allows_planning()) {
             return Err(words::mend_before_planning(first.fault.code(), &fault_message(&first.fault, session)));
         }
-        let plan = next_stations(&problem, solution, &limits, num).map_err(|refusal| refusal.to_string())?;
+        let plan = next_stations(solution, &limits, num).map_err(|refusal| refusal.to_string())?;
         return Ok((plan, Some(solution.method)));
     }
     let cell =

@@ -7,17 +7,16 @@ use crate::calibrate::observation::{CentreObservation, State};
 use crate::calibrate::solver::{Gradient, Hessian, Normal};
 use crate::geometry::{Mat3, Rigid, Vec3, so3};
 
-use super::information::about_sensor;
-use super::search::Cell;
-use super::typical::{Room, StationModel};
+use super::ball::{Ball, Room, StationModel, about_sensor};
+use super::orientation::Orientations;
 use super::{Limits, PlanRefusal, RoughCell};
 
 /// Noise of a point along the range axis, mm: that of common profilers.
 const PROFILE_STD_MM: f64 = 0.01;
 /// Noise of each coordinate of a reported position, mm, and ...
-const POSITION_STD_MM: f64 = 0.02;
+pub(super) const POSITION_STD_MM: f64 = 0.02;
 /// ... of a reported orientation about each axis, degrees: a good arm of middle size.
-const ORIENTATION_STD_DEG: f64 = 0.005;
+pub(super) const ORIENTATION_STD_DEG: f64 = 0.005;
 /// Distance of the ball's centre along the range axis where the limits do not say, mm.
 const STANDOFF_MM: f64 = 100.0;
 /// How far the ball may be from the middle of the profile, and nearer or further than the stand-off, where the limits do
@@ -37,16 +36,14 @@ const GUESS_STD_MM: f64 = 20.0;
 /// The cell, ready to be searched.
 #[derive(Clone, Debug)]
 pub(super) struct Nominal {
-    pub cell: Cell,
-    /// The sensor in the base at the reference orientation.
-    pub reference: UnitQuaternion<f64>,
+    pub ball: Ball,
     pub reference_point_in_sensor: Vec3,
 }
 
 impl Nominal {
     /// # Errors
-    /// [`PlanRefusal::NothingWithinLimits`] if the ball does not stay in view, [`PlanRefusal::Undetermined`] if the cell's
-    /// numbers are none.
+    /// [`PlanRefusal::NothingWithinLimits`] if the ball does not stay in view or nothing may be turned,
+    /// [`PlanRefusal::Undetermined`] if the cell's numbers are none.
     pub fn new(rough: &RoughCell, limits: &Limits) -> Result<Self, PlanRefusal> {
         let looks_along = checked(rough)?;
         let mounting = rough.flange_from_sensor;
@@ -58,12 +55,12 @@ impl Nominal {
         let (balls, about_sensor) = usual_sweep(rough, standoff_mm);
         let model = StationModel::new(&balls, &about_sensor, &room).ok_or(PlanRefusal::NothingWithinLimits)?;
         Ok(Self {
-            cell: Cell {
-                mount: rough.mount,
+            ball: Ball {
                 state: State { flange_from_sensor: mounting, ball_in_base: rough.target_in_base_mm },
                 models: vec![model],
+                orientations: Orientations::new(reference(looks_along, &mounting.rotation), limits)?,
+                sight: None,
             },
-            reference: reference(looks_along, &mounting.rotation),
             reference_point_in_sensor: middle,
         })
     }

@@ -4,7 +4,6 @@ use std::f64::consts::TAU;
 
 use nalgebra::UnitQuaternion;
 
-use crate::calibrate::Reduced;
 use crate::geometry::so3::{self, nearest_rotation};
 use crate::geometry::{Mat3, Vec3};
 
@@ -65,16 +64,15 @@ impl Orientations {
         Ok(Self { base_from_reference, max_tilt, max_spin })
     }
 
-    /// About the mean of the stations that a solution used.
+    /// About the mean of what the sensor took already.
     ///
     /// # Errors
-    /// As [`Orientations::new`], and [`PlanRefusal::Undetermined`] without stations.
-    pub fn about_mean_of(reduced: &Reduced, limits: &Limits) -> Result<Self, PlanRefusal> {
-        let mounting = reduced.state.flange_from_sensor.rotation;
-        let mut rotations = reduced
-            .observations
-            .iter()
-            .map(|observation| (observation.base_from_flange.rotation * mounting).to_rotation_matrix().into_inner());
+    /// As [`Orientations::new`], and [`PlanRefusal::Undetermined`] if there is nothing.
+    pub fn about_mean_of(
+        base_from_sensor: impl Iterator<Item = UnitQuaternion<f64>>,
+        limits: &Limits,
+    ) -> Result<Self, PlanRefusal> {
+        let mut rotations = base_from_sensor.map(|rotation| rotation.to_rotation_matrix().into_inner());
         let first = rotations.next().ok_or(PlanRefusal::Undetermined)?;
         let sum: Mat3 = rotations.fold(first, |sum, rotation| sum + rotation);
         // Orientations all around have no mean; then any of them is as good a reference as another.

@@ -10,23 +10,23 @@ use nalgebra::{Matrix6, Vector6};
 
 use crate::calibrate::Mount;
 use crate::calibrate::ball::MIN_STATIONS;
-use crate::calibrate::observation::{CentreObservation, State};
+use crate::calibrate::observation::{CentreObservation, NUM_UNKNOWNS, State};
 use crate::calibrate::solver::{Gradient, Hessian, Normal, covariance_for_unit_noise, minimise_sums};
-use crate::geometry::{Base, Flange, Mat3, Transform, Vec3, se3};
+use crate::geometry::{Base, Flange, Mat3, Rigid, Transform, Vec3, se3};
 
+use super::ball::{Ball, StationModel};
 use super::information::Information;
 use super::nominal;
 use super::orientation::Orientations;
-use super::search::{Cell, Search};
+use super::search::{Search, Taken};
 use super::sight::Sight;
-use super::typical::StationModel;
 use super::{Limits, PlanRefusal, PlannedStation, RoughCell};
 
 /// σ of a guessed mounting about and along each axis: within 10° and 20 mm is two of them.
-const GUESS_STD_DEG: f64 = 5.0;
-const GUESS_STD_MM: f64 = 10.0;
+pub(super) const GUESS_STD_DEG: f64 = 5.0;
+pub(super) const GUESS_STD_MM: f64 = 10.0;
 /// No station is taken for better than this, mm: what is estimated here need not be a calibration.
-const LEAST_STD_MM: f64 = 0.05;
+pub(super) const LEAST_STD_MM: f64 = 0.05;
 /// Where the ball's centre is beside the laser plane at the first capture, radii; the nearer to 0, the surer it is struck.
 const FIRST_SECTION_RADII: [f64; 3] = [0.5, 0.25, 0.0];
 /// Further beside than this, radii, a section is too small for an arc.
@@ -149,7 +149,6 @@ pub fn next_rough(
         || nominal::reference(looks_along, &now.flange_from_sensor.rotation),
         |first| base_from_sensor(&first.base_from_flange),
     );
-    let orientations = Orientations::new(reference, limits)?;
     let (_, about_sensor) = nominal::usual_sweep(&now, view.middle_range_mm);
     let shift_mm = [0, 2].map(|axis| [-half[axis], half[axis]]);
     let model = |radii: f64| StationModel {
@@ -157,23 +156,26 @@ pub fn next_rough(
         about_sensor,
         shift_mm,
     };
-    let planned_cell = Cell {
-        mount: cell.mount,
+    let ball = Ball {
         state: State { flange_from_sensor: now.flange_from_sensor, ball_in_base: now.target_in_base_mm },
         models: FIRST_SECTION_RADII.map(model).to_vec(),
+        orientations: Orientations::new(reference, limits)?,
+        sight: None,
     };
     let Some(estimate) = estimate(cell, stations) else {
         let known = Information::new(&nominal::prior(), middle);
-        let mut search = Search::new(planned_cell, orientations, &known, Vec::new());
-        return Ok((search.reference(|_| None), now));
+        let mut search = Search::new(cell.mount, now.flange_from_sensor, ball, known, Vec::new());
+        let station = search.reference(|_| None).ok_or(PlanRefusal::NothingWithinLimits)?;
+        return Ok((station, now));
     };
     let known = Information::new(&estimate.information, middle);
     let covariance = covariance_for_unit_noise(&estimate.information).map_err(|_| PlanRefusal::Undetermined)?;
-    let taken = stations.iter().map(|station| &station.base_from_flange).chain(avoided).map(base_from_sensor).collect();
-    let mut search =
-        Search::new(planned_cell, orientations, &known, taken).within_sight(&Sight { covariance, middle, half });
+    let ball = Ball { sight: Some(Sight { covariance, middle, half }), ..ball };
+    let poses = stations.iter().map(|station| &station.base_from_flange).chain(avoided);
+    let taken = poses.map(|pose| Taken { base_from_sensor: base_from_sensor(pose), edge: None }).collect();
+    let mut search = Search::new(cell.mount, now.flange_from_sensor, ball, known, taken);
     let is_determined = stations.len() + 1 >= MIN_STATIONS;
-    let point_std = |information: &Information| {
+    let point_std = |information: &Information<NUM_UNKNOWNS>| {
         // What is known of the mounting by guess is no measurement.
         is_determined.then(|| information.without(&estimate.prior).point_std()).flatten()
     };
@@ -196,20 +198,35 @@ fn estimate(cell: &RoughCell, stations: &[MeasuredStation]) -> Option<Refined> {
     Some(Refined { state, information, prior })
 }
 
-/// Adds what the guess says about the mounting: e = log(guess⁻¹ X) is zero within its σ.
+/// Adds what the guess says about the mounting.
 fn with_guess(normal: &Normal, state: &State, cell: &RoughCell) -> Normal {
-    let off: Vector6<f64> = se3::log(&(cell.flange_from_sensor.inverse() * state.flange_from_sensor));
-    let (by_turn, by_length) = (GUESS_STD_DEG.to_radians().powi(-2), GUESS_STD_MM.powi(-2));
-    let weights = Matrix6::from_diagonal(&Vector6::new(by_turn, by_turn, by_turn, by_length, by_length, by_length));
-    // A step to the right of X changes the logarithm by the inverse of the right Jacobian.
-    let by_step = se3::right_jacobian(&off).try_inverse().unwrap_or_else(Matrix6::identity);
+    let guess = Guess::at(&cell.flange_from_sensor, &state.flange_from_sensor, GUESS_STD_DEG, GUESS_STD_MM);
     let mut hessian = Hessian::zeros();
-    hessian.fixed_view_mut::<6, 6>(0, 0).copy_from(&(by_step.transpose() * weights * by_step));
+    hessian.fixed_view_mut::<6, 6>(0, 0).copy_from(&guess.hessian);
     let mut gradient = Gradient::zeros();
-    gradient.fixed_rows_mut::<6>(0).copy_from(&-(by_step.transpose() * weights * off));
-    Normal {
-        hessian: normal.hessian + hessian,
-        gradient: normal.gradient + gradient,
-        cost: normal.cost + off.dot(&(weights * off)),
+    gradient.fixed_rows_mut::<6>(0).copy_from(&guess.gradient);
+    Normal { hessian: normal.hessian + hessian, gradient: normal.gradient + gradient, cost: normal.cost + guess.cost }
+}
+
+/// The sums of a guessed frame: e = log(guess⁻¹ X) is zero within its σ.
+pub(super) struct Guess {
+    pub hessian: Matrix6<f64>,
+    pub gradient: Vector6<f64>,
+    pub cost: f64,
+}
+
+impl Guess {
+    /// At a frame that is stepped to its right.
+    pub fn at(guessed: &Rigid, frame: &Rigid, std_deg: f64, std_mm: f64) -> Self {
+        let off: Vector6<f64> = se3::log(&(guessed.inverse() * frame));
+        let (by_turn, by_length) = (std_deg.to_radians().powi(-2), std_mm.powi(-2));
+        let weights = Matrix6::from_diagonal(&Vector6::new(by_turn, by_turn, by_turn, by_length, by_length, by_length));
+        // Such a step changes the logarithm by the inverse of the right Jacobian.
+        let by_step = se3::right_jacobian(&off).try_inverse().unwrap_or_else(Matrix6::identity);
+        Self {
+            hessian: by_step.transpose() * weights * by_step,
+            gradient: -(by_step.transpose() * weights * off),
+            cost: off.dot(&(weights * off)),
+        }
     }
 }

@@ -126,11 +126,11 @@ impl Workbench {
     }
 
     pub(super) fn start_planning(&mut self) {
-        let Some((_, problem, results)) = self.ball_case() else { return };
+        let Some((_, _, results)) = self.case() else { return };
         let limits = self.plan_limits;
         self.plan.start("plan", &self.wake, results.revision, move |_| {
             let solution = best_available(&results.methods).ok_or(PlanRefusal::Undetermined);
-            Ok(solution.and_then(|solution| next_stations(&problem, solution, &limits, NUM_PLANNED)))
+            Ok(solution.and_then(|solution| next_stations(solution, &limits, NUM_PLANNED)))
         });
     }
 

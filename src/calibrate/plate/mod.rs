@@ -16,6 +16,7 @@ mod noise;
 mod refit;
 mod start;
 
+pub(crate) use noise::of_pose;
 pub use points::{EdgePoint, PlateState};
 pub use refit::{PlateReduced, PlateRefit};
 

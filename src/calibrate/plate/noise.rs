@@ -2,7 +2,7 @@
 
 use crate::calibrate::{AboveStated, Mount, NoiseModel, PlateProblem};
 use crate::geometry::so3::hat;
-use crate::geometry::{Mat3, Rigid, stats};
+use crate::geometry::{Mat3, Rigid, Vec3, stats};
 
 use super::measured::Measured;
 use super::points::{EdgePoint, NUM_UNKNOWNS, PlateState};
@@ -207,12 +207,18 @@ fn covariance(variances: &Variances, point: &Measured, flange_from_sensor: &Rigi
         },
     );
     let in_base = point.point.in_base(flange_from_sensor);
+    let of_pose = of_pose(variances.position, variances.orientation, in_base, &point.point.base_from_flange, mount);
+    rotation * in_plane * rotation.transpose() + of_pose * point.num_at_pose
+}
+
+/// Covariance (mm²) of a point in the base by the noise of the robot's pose: variances of its position (mm²) and orientation
+/// (rad²).
+pub(crate) fn of_pose(position: f64, orientation: f64, in_base: Vec3, base_from_flange: &Rigid, mount: Mount) -> Mat3 {
     let lever = hat(match mount {
         // An error of the flange's orientation turns what the sensor sees about the flange.
-        Mount::OnFlange => in_base - point.point.base_from_flange.translation.vector,
+        Mount::OnFlange => in_base - base_from_flange.translation.vector,
         // The poses are inverted: what is called base here is the flange, and turns about its own origin.
         Mount::Fixed => in_base,
     });
-    let of_pose = Mat3::identity() * variances.position + lever * lever.transpose() * variances.orientation;
-    rotation * in_plane * rotation.transpose() + of_pose * point.num_at_pose
+    Mat3::identity() * position + lever * lever.transpose() * orientation
 }

@@ -149,8 +149,7 @@ impl Found {
         };
         let plan = best
             .filter(|_| diagnosis.allows_planning())
-            .zip(problem.as_ball())
-            .and_then(|(solution, ball)| next_stations(ball, solution, &Limits::default(), NUM_PLANNED).ok());
+            .and_then(|solution| next_stations(solution, &Limits::default(), NUM_PLANNED).ok());
         Ok(Self { diagnosis, plan, bootstrap })
     }
 

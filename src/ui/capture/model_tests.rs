@@ -79,6 +79,7 @@ fn with_addresses() -> CellMemory {
 fn proposal(refusal: Option<crate::device::MotionRefusal>) -> Proposal {
     let station = PlannedStation {
         base_from_flange: Transform::identity(),
+        edge: None,
         tilt_deg: 20.0,
         azimuth_deg: 90.0,
         spin_deg: 0.0,

@@ -184,6 +184,7 @@ mod tests {
         let rotation = convention.rotation_from_angles_deg([10.0, -20.0, 30.0]);
         let station = PlannedStation {
             base_from_flange: Transform::from_parts(Vec3::new(1.0, -2.5, 300.0), rotation),
+            edge: None,
             tilt_deg: 28.0,
             azimuth_deg: -90.0,
             spin_deg: 0.0,

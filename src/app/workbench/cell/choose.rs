@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::calibrate::{BallProblem, best_available};
+use crate::calibrate::best_available;
 use crate::device::{Arming, MotionRefusal, RobotReport, SearchSettings};
 use crate::geometry::{Base, Flange, Transform};
 use crate::plan::{
@@ -27,7 +27,7 @@ pub(super) type Chosen = (PlannedStation, String);
 /// What stations are chosen by.
 pub(super) enum Basis {
     /// A solution, and the plan that was made for it.
-    Solved { problem: Arc<BallProblem>, results: Arc<Results>, planned: Plan },
+    Solved { results: Arc<Results>, planned: Plan },
     /// The mounting as it was said, and where the ball was seen.
     Rough { cell: RoughCell, stations: Vec<MeasuredStation>, view: View },
 }
@@ -78,7 +78,7 @@ impl Chooser {
     /// The best stations that are not avoided.
     fn candidates(&mut self) -> Result<Vec<Chosen>, String> {
         match &mut self.basis {
-            Basis::Solved { problem, results, planned } => {
+            Basis::Solved { results, planned } => {
                 let now_mm = planned.workspace_point_std_mm;
                 let is_avoided = |station: &PlannedStation| {
                     let rotation = station.base_from_flange.rotation();
@@ -88,7 +88,7 @@ impl Chooser {
                 if stations.is_empty() {
                     let solution =
                         best_available(&results.methods).ok_or_else(|| PlanRefusal::Undetermined.to_string())?;
-                    let plan = next_stations(problem, solution, &self.limits, NUM_AT_ONCE);
+                    let plan = next_stations(solution, &self.limits, NUM_AT_ONCE);
                     stations = plan.map_err(|refusal| refusal.to_string())?.stations;
                 }
                 stations.retain(|station| !is_avoided(station));

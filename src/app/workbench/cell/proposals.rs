@@ -216,8 +216,8 @@ impl Workbench {
 
     /// What the next station is chosen by.
     fn basis(&self) -> Result<Basis, String> {
-        if let (Some(plan), Some((_, problem, results))) = (self.current_plan(), self.ball_case()) {
-            return Ok(Basis::Solved { problem, results, planned: plan.clone() });
+        if let (Some(plan), Some((_, _, results))) = (self.current_plan(), self.case()) {
+            return Ok(Basis::Solved { results, planned: plan.clone() });
         }
         let (Some(document), Some(sought)) = (&self.document, self.sought()) else {
             return Err(words::NO_SESSION.to_owned());
