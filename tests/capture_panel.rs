@@ -163,7 +163,7 @@ fn proposal(refusal: Option<MotionRefusal>) -> Proposal {
         workspace_point_std_mm: Some(0.12),
     };
     let reason = "tilted 18° towards 60°: it brings σ of the workspace point from 0.13 to about 0.12 mm".to_owned();
-    Proposal { station, edge: None, reason, distance_mm: 82.0, turn_deg: 31.0, refusal }
+    Proposal { station, reason, distance_mm: 82.0, turn_deg: 31.0, refusal }
 }
 
 /// A search that is past the peak.

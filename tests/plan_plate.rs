@@ -126,7 +126,11 @@ fn planned_stations_bring_what_was_said() {
                     let solution = solved(&session);
                     let num_used = solution.plate.as_ref().map_or(solution.stations.len(), |plate| plate.points.len());
                     assert_eq!(num_used, session.stations.len(), "every planned station saw its edge or tip");
-                    println!("{:.4} -> {before:.4}, got {:.4}", plan.workspace_point_std_mm.expect("determined"), std_mm(&solution));
+                    println!(
+                        "{:.4} -> {before:.4}, got {:.4}",
+                        plan.workspace_point_std_mm.expect("determined"),
+                        std_mm(&solution)
+                    );
                     std_mm(&solution) / before
                 })
                 .collect();

@@ -146,8 +146,6 @@ pub enum Activity {
 pub struct Proposal {
     /// Where to go.
     pub station: PlannedStation,
-    /// The edge of a plate that is seen from there.
-    pub edge: Option<Edge>,
     /// Why there, in words.
     pub reason: String,
     /// Length of the way, mm.

@@ -12,7 +12,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
 
-use crate::fit::ArcOptions;
+use crate::fit::{ArcOptions, Sought};
 use crate::geometry::{Base, Flange, Profile, Transform};
 use crate::watch::Wake;
 
@@ -64,6 +64,11 @@ pub enum RoutineEnd {
     Done,
     /// A search ended; [`SearchEnd::Found`] is success.
     Searched(SearchEnd),
+    /// The profile was kept, but does not show what was looked for.
+    NothingSeen {
+        /// Why not.
+        reason: String,
+    },
     /// A motion was not sent.
     NotAllowed(MotionRefusal),
     /// The pose before the profile and that after it differ, again and again.
@@ -101,8 +106,8 @@ impl RoutineEnd {
 /// What to measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Measurement {
-    /// One settled profile.
-    Profile,
+    /// One settled profile, in which something is to be found if that is said.
+    Profile(Option<Sought>),
     /// The search for the largest arc of a ball.
     LargestArc(SearchSettings, ArcOptions),
 }

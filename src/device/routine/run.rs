@@ -99,11 +99,12 @@ impl Runner {
         }
         match &self.task.measurement {
             None => Ok(RoutineEnd::Done),
-            Some(Measurement::Profile) => {
+            Some(Measurement::Profile(sought)) => {
                 self.tell(RoutineEvent::Settling);
                 let capture = self.capture(None)?;
+                let refusal = sought.and_then(|sought| sought.find(&capture.profile).err());
                 self.tell(RoutineEvent::Captured(capture));
-                Ok(RoutineEnd::Done)
+                Ok(refusal.map_or(RoutineEnd::Done, |refusal| RoutineEnd::NothingSeen { reason: refusal.to_string() }))
             }
             Some(Measurement::LargestArc(settings, ball)) => self.search(settings, ball),
         }

@@ -85,7 +85,7 @@ fn proposal(refusal: Option<crate::device::MotionRefusal>) -> Proposal {
         spin_deg: 0.0,
         workspace_point_std_mm: None,
     };
-    Proposal { station, edge: None, reason: "tells most".to_owned(), distance_mm: 80.0, turn_deg: 20.0, refusal }
+    Proposal { station, reason: "tells most".to_owned(), distance_mm: 80.0, turn_deg: 20.0, refusal }
 }
 
 const RUN: RunView = RunView { num_done: 2, num_failed: 0, num_stations: 8, is_paused: false, is_asking: false };

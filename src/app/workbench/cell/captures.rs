@@ -129,7 +129,10 @@ impl Workbench {
                 }
                 Measurement::LargestArc(settings.search, *ball)
             }
-            (StationRoutine::LargestArc | StationRoutine::FixedPoint, _) => Measurement::Profile,
+            // Whoever captures by hand has seen what there is; a run has not.
+            (StationRoutine::LargestArc | StationRoutine::FixedPoint, _) => {
+                Measurement::Profile(go_to.is_some().then_some(sought))
+            }
         };
         let task = Task { go_to, measurement: Some(measurement), settle: settings.settle, arming: self.arming() };
         let edge = (document.session.target == Target::RightAnglePlate).then_some(settings.edge);
@@ -290,7 +293,9 @@ impl Workbench {
         if let RoutineEnd::Searched(SearchEnd::Found { peak_mm, peak_std_mm }) = end {
             self.note_peak(&measuring, *peak_mm, *peak_std_mm);
         }
-        if let RoutineEnd::Searched(SearchEnd::NoArcAtStart { .. } | SearchEnd::ResidualGrew { .. }) = end {
+        if let RoutineEnd::Searched(SearchEnd::NoArcAtStart { .. } | SearchEnd::ResidualGrew { .. })
+        | RoutineEnd::NothingSeen { .. } = end
+        {
             self.leave_out(&measuring);
         }
         match measuring.go_to {
@@ -308,7 +313,7 @@ impl Workbench {
         self.cell.proposing.note_peak(FoundPeak { first_profile: Arc::clone(first_profile), base_from_flange, std_mm });
     }
 
-    /// Captures that show no ball, or one that moved, take no part until somebody has looked.
+    /// Captures that do not show the target, or one that moved, take no part until somebody has looked.
     fn leave_out(&mut self, measuring: &Measuring) {
         let Some(document) = self.document.as_ref().filter(|document| measuring.document_id == Some(document.id))
         else {

@@ -6,6 +6,7 @@ mod links;
 mod practice;
 mod proposals;
 mod replay;
+mod rough;
 mod run;
 mod travel;
 

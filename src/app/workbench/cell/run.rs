@@ -306,7 +306,7 @@ impl Workbench {
 /// Whether another pose may do better: nothing is wrong with the cell, as far as this ending tells.
 const fn is_of_this_pose(end: &RoutineEnd) -> bool {
     match end {
-        RoutineEnd::Done => true,
+        RoutineEnd::Done | RoutineEnd::NothingSeen { .. } => true,
         RoutineEnd::Searched(end) => match end {
             SearchEnd::Found { .. }
             | SearchEnd::NoArcAtStart { .. }
