@@ -24,11 +24,11 @@ pub struct RoughMounting {
     pub quaternion_wxyz: [f64; 4],
 }
 
-/// What is measured at a station of a ball; of the others it is always one profile.
+/// What is measured at a station; of a plate it is always one profile.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum StationRoutine {
-    /// The search for the largest arc.
+    /// The search for a ball's largest arc, or for a tip.
     #[default]
     LargestArc,
     /// One profile.
@@ -83,6 +83,8 @@ pub enum CellCommand {
     CaptureStation,
     /// Searches the largest arc from where the robot stands: a station.
     FindLargestArc,
+    /// Searches the tip from where the robot stands, and captures it: a station.
+    FindTip,
     /// Asks for the next station's pose; it is shown in [`CellView::proposal`] and nothing moves.
     ProposeStation,
     /// Goes to the proposed pose and measures there.

@@ -12,7 +12,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
 
-use crate::fit::{ArcOptions, Sought};
+use crate::fit::{ArcOptions, EdgeOptions, Sought};
 use crate::geometry::{Base, Flange, Profile, Transform};
 use crate::watch::Wake;
 
@@ -64,7 +64,7 @@ pub enum RoutineEnd {
     Done,
     /// A search ended; [`SearchEnd::Found`] is success.
     Searched(SearchEnd),
-    /// The profile was kept, but does not show what was looked for.
+    /// What was looked for was not found. A profile that was to show it is kept all the same.
     NothingSeen {
         /// Why not.
         reason: String,
@@ -110,6 +110,8 @@ pub enum Measurement {
     Profile(Option<Sought>),
     /// The search for the largest arc of a ball.
     LargestArc(SearchSettings, ArcOptions),
+    /// One settled profile of a tip, once it is known where that is.
+    Tip(SearchSettings, EdgeOptions),
 }
 
 /// What a routine is to do.

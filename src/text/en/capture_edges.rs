@@ -75,3 +75,12 @@ pub const NOT_SEEN: &str = "A capture now would not count: see above the profile
 /// Why no further station is proposed.
 pub const BOTH_FIRST: &str =
     "Capture each edge once first: the next stations are turned about these points and moved along the edges.";
+/// Button of the search for a tip.
+pub const FIND: &str = "Find the tip";
+/// On hover.
+pub const FIND_HINT: &str =
+    "Steps the robot across the tip, sees from the heights of the profiles where it is, and captures it there";
+/// Choice of what a run measures.
+pub const SEARCHED_TIP: &str = "search the tip";
+/// All is ready.
+pub const READY_TO_FIND: &str = "Ready to search the tip where the robot stands.";

@@ -226,10 +226,10 @@ fn orientation(station: &PlannedStation) -> String {
     station.edge.map_or(turned.clone(), |edge| format!("edge {}, {turned}", edge_name(edge)))
 }
 
-/// A single profile that was to be of use.
+/// A profile that was to show the target does not.
 #[must_use]
 pub fn nothing_seen(reason: &str) -> String {
-    format!("the profile does not show the target, so the station is left out: {reason}")
+    format!("the target was not found: {reason}")
 }
 
 /// A station by its label.

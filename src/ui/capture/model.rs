@@ -94,6 +94,14 @@ impl<'a> View<'a> {
         self.session.and_then(ball_radius_mm)
     }
 
+    /// What is wrong with the settings for what is measured here; of a ball if there is no session yet.
+    #[must_use]
+    pub fn problems(&self) -> Vec<Problem> {
+        let is_searched = !self.is_plate();
+        let longest_step_mm = is_searched.then(|| self.ball_radius_mm().unwrap_or(f64::INFINITY));
+        problems(&self.cell.settings, longest_step_mm, self.cell.robot.latest.as_ref())
+    }
+
     /// The session's target, if a calibration is measured on it.
     #[must_use]
     pub fn target(&self) -> Option<&'a Target> {
@@ -183,8 +191,10 @@ pub fn is_run_over(cell: &CellView) -> bool {
 #[must_use]
 pub fn refusal(view: &View<'_>, command: &CellCommand) -> Option<&'static str> {
     let cell = view.cell;
-    let moves =
-        matches!(command, CellCommand::FindLargestArc | CellCommand::AcceptProposal | CellCommand::StartRun { .. });
+    let moves = matches!(
+        command,
+        CellCommand::FindLargestArc | CellCommand::FindTip | CellCommand::AcceptProposal | CellCommand::StartRun { .. }
+    );
     let captures = moves || *command == CellCommand::CaptureStation;
     let proposes = matches!(command, CellCommand::ProposeStation | CellCommand::SkipProposal);
     let is_asked = *command == CellCommand::AcceptProposal || proposes;
@@ -217,11 +227,10 @@ pub fn refusal(view: &View<'_>, command: &CellCommand) -> Option<&'static str> {
     if view.target().is_none() {
         return Some(words::NO_TARGET_SESSION);
     }
-    let radius_mm = view.ball_radius_mm();
-    if *command == CellCommand::FindLargestArc && radius_mm.is_none() {
+    if *command == CellCommand::FindLargestArc && view.ball_radius_mm().is_none() {
         return Some(words::NO_BALL);
     }
-    if moves && !problems(&cell.settings, radius_mm, cell.robot.latest.as_ref()).is_empty() {
+    if moves && !view.problems().is_empty() {
         return Some(words::SETTINGS_WRONG);
     }
     if (matches!(command, CellCommand::StartRun { .. }) || proposes) && view.edge_to_begin().is_some() {
@@ -455,9 +464,10 @@ pub struct Problem {
     pub fields: &'static [&'static str],
 }
 
-/// What is wrong with the settings; empty if nothing is. Without a ball nothing is searched.
+/// What is wrong with the settings; empty if nothing is. Steps are to be below the ball's radius; without a longest step
+/// nothing is searched.
 #[must_use]
-pub fn problems(settings: &CellSettings, ball_radius_mm: Option<f64>, robot: Option<&RobotReport>) -> Vec<Problem> {
+pub fn problems(settings: &CellSettings, most_step_mm: Option<f64>, robot: Option<&RobotReport>) -> Vec<Problem> {
     const BOX: &[&str] = words_of_settings::SIDES.as_flattened();
     let (search, limits) = (&settings.search, &settings.limits);
     let longest_step_mm = search.step_mm.max(search.coarse_step_mm);
@@ -472,12 +482,12 @@ pub fn problems(settings: &CellSettings, ball_radius_mm: Option<f64>, robot: Opt
     };
     let is_above_cap = |speed_mm_s: f64| speed_mm_s > limits.max_speed_mm_s;
     let [transit, step] = [&[words_of_settings::TRANSIT_SPEED], &[words_of_settings::SEARCH_SPEED]];
-    if let Some(ball_radius_mm) = ball_radius_mm {
+    if let Some(most_step_mm) = most_step_mm {
         let has_no_direction = search.direction.iter().all(|part| *part == 0.0);
         check(has_no_direction, problem::NO_DIRECTION, &words_of_settings::PARTS);
         check(search.max_travel_mm < 2.0 * search.step_mm, problem::LITTLE_TRAVEL, &[words_of_settings::MAX_TRAVEL]);
         check(search.coarse_step_mm < search.step_mm, problem::COARSE_IS_FINER, &[words_of_settings::COARSE_STEP]);
-        check(longest_step_mm > ball_radius_mm, problem::STEP_BEYOND_BALL, longest_step);
+        check(longest_step_mm > most_step_mm, problem::STEP_BEYOND_BALL, longest_step);
         check(longest_step_mm > limits.max_move_mm, problem::STEP_TOO_LONG, longest_step);
         check(is_above_cap(limits.search_speed_mm_s), problem::SEARCH_TOO_FAST, step);
     }

@@ -7,7 +7,7 @@ use crate::text::capture as words;
 use crate::text::capture_edges as words_of_edges;
 
 use super::memory::CellMemory;
-use super::model::{View, is_run_over, problems};
+use super::model::{View, is_run_over};
 
 /// Something that a button of the panel asks for.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,7 +83,7 @@ pub fn next(view: &View<'_>, memory: &CellMemory) -> Next {
     if let Some(Readiness::NotReady { found, remedy }) = readiness {
         return Next::wait(words::not_ready(found, remedy));
     }
-    if let Some(problem) = problems(&cell.settings, view.ball_radius_mm(), cell.robot.latest.as_ref()).first() {
+    if let Some(problem) = view.problems().first() {
         return Next::wait(words::now::settings(problem.sentence));
     }
     if let Some(proposal) = &cell.proposal {
@@ -117,9 +117,13 @@ pub fn next(view: &View<'_>, memory: &CellMemory) -> Next {
         let start = CellCommand::StartRun { num_stations: memory.num_stations.0 };
         return Next::command(words::now::RUN, words::START_RUN, start).reminding_of_switch(cell);
     }
-    if view.is_of_edges() {
+    if view.is_plate() {
         let sentence = words::now::capture(target, cell.settings.edge);
         return Next::command(sentence, words::capture_name(target), CellCommand::CaptureStation);
+    }
+    if *target == Target::Point {
+        return Next::command(words_of_edges::READY_TO_FIND, words_of_edges::FIND, CellCommand::FindTip)
+            .reminding_of_switch(cell);
     }
     Next::command(words::now::FIND, words::FIND, CellCommand::FindLargestArc).reminding_of_switch(cell)
 }

@@ -5,6 +5,7 @@ use egui::{Align, Frame, Label, Layout, Margin, ProgressBar, Ui, UiBuilder, vec2
 use crate::app::cell::{CellCommand, Proposal, StationRoutine};
 use crate::calibrate::verdict::GOOD_UP_TO_MM;
 use crate::device::{MotionRefusal, RoutineEnd};
+use crate::session::Target;
 use crate::text::capture as words;
 use crate::text::capture_edges as words_of_edges;
 use crate::text::cell::reason_of_end;
@@ -95,8 +96,13 @@ fn station(ui: &mut Ui, desk: &mut Desk<'_>) {
         |ui| {
             body(ui, |ui| {
                 ui.with_layout(Layout::top_down_justified(Align::Center), |ui| {
-                    if !is_of_edges {
-                        ask(ui, desk, words::FIND, words::FIND, words::FIND_HINT, CellCommand::FindLargestArc);
+                    match target {
+                        Some(Target::RightAnglePlate) => {}
+                        Some(Target::Point) => {
+                            let (find, hint) = (words_of_edges::FIND, words_of_edges::FIND_HINT);
+                            ask(ui, desk, find, find, hint, CellCommand::FindTip);
+                        }
+                        _ => ask(ui, desk, words::FIND, words::FIND, words::FIND_HINT, CellCommand::FindLargestArc),
                     }
                     let name = target.map_or(words::CAPTURE, words::capture_name);
                     ask(ui, desk, words::CAPTURE_SHORT, name, words::CAPTURE_HINT, CellCommand::CaptureStation);
@@ -199,12 +205,12 @@ fn run_settings(ui: &mut Ui, desk: &mut Desk<'_>) {
     desk.state.fields.row(ui, words::RUN_STATIONS, "", field);
     desk.state.fields.remarks(ui, |name| name == words::RUN_STATIONS);
     let mut settings = desk.view.cell.settings;
-    // Of a plate and a tip it is always one profile.
-    let has_choice = !desk.view.is_of_edges();
+    // Of a plate it is always one profile.
+    let has_choice = !desk.view.is_plate();
+    let search = if desk.view.is_of_edges() { words_of_edges::SEARCHED_TIP } else { words::LARGEST_ARC };
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = theme::GAP;
-        for (routine, name) in
-            [(StationRoutine::LargestArc, words::LARGEST_ARC), (StationRoutine::FixedPoint, words::FIXED_POINT)]
+        for (routine, name) in [(StationRoutine::LargestArc, search), (StationRoutine::FixedPoint, words::FIXED_POINT)]
         {
             if has_choice {
                 ui.radio_value(&mut settings.routine, routine, name);

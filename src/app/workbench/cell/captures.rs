@@ -8,7 +8,7 @@ use crate::app::cell::{Activity, CellView, StationRoutine};
 use crate::calibrate::SideChoice;
 use crate::device::{
     DeviceError, LinkState, Measurement, RobotKind, Routine, RoutineEnd, RoutineEvent, SearchEnd, SearchReport,
-    StepCapture, Task,
+    SearchSettings, StepCapture, Task,
 };
 use crate::fit::Sought;
 use crate::geometry::{Base, Flange, Profile, Transform};
@@ -82,7 +82,8 @@ impl Workbench {
         self.measure_by_hand(StationRoutine::FixedPoint);
     }
 
-    pub(super) fn find_largest_arc(&mut self) {
+    /// That of a ball's largest arc, or of a tip.
+    pub(super) fn search_here(&mut self) {
         self.measure_by_hand(StationRoutine::LargestArc);
     }
 
@@ -91,9 +92,15 @@ impl Workbench {
             self.notify_of_cell(NoticeKind::Error, words::BUSY.to_owned());
         } else if let Err(reason) = self.measure_station(None, routine) {
             self.notify_of_cell(NoticeKind::Error, reason);
-        } else if routine == StationRoutine::LargestArc {
+        } else if self.search_of(routine).is_some() {
             self.remark_oblique_travel();
         }
+    }
+
+    /// The search that a routine makes of what is measured here; none on a plate, where one profile is enough.
+    pub(super) fn search_of(&self, routine: StationRoutine) -> Option<SearchSettings> {
+        let is_searched = self.sought().is_some_and(|sought| sought.ball().is_some() || sought.is_tip());
+        (is_searched && routine == StationRoutine::LargestArc).then_some(self.cell.view.settings.search)
     }
 
     /// A search from here that is longer than it has to be.
@@ -122,12 +129,15 @@ impl Workbench {
         need_ready(sensor.client().link_state(now), words::NO_SENSOR)?;
         let settings = &self.cell.view.settings;
         let latest = self.cell.view.robot.latest.as_ref();
+        if let (Some(search), Some(at)) =
+            (self.search_of(routine), go_to.or(latest.map(|report| report.base_from_flange)))
+        {
+            self.check_travel(&at, &search).map_err(|refusal| refusal.to_string())?;
+        }
         let measurement = match (routine, &sought) {
-            (StationRoutine::LargestArc, Sought::Arc(ball)) => {
-                if let Some(at) = go_to.or(latest.map(|report| report.base_from_flange)) {
-                    self.check_travel(&at, &settings.search).map_err(|refusal| refusal.to_string())?;
-                }
-                Measurement::LargestArc(settings.search, *ball)
+            (StationRoutine::LargestArc, Sought::Arc(ball)) => Measurement::LargestArc(settings.search, *ball),
+            (StationRoutine::LargestArc, Sought::Edge(tip)) if sought.is_tip() => {
+                Measurement::Tip(settings.search, *tip)
             }
             // Whoever captures by hand has seen what there is; a run has not.
             (StationRoutine::LargestArc | StationRoutine::FixedPoint, _) => {

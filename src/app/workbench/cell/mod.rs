@@ -76,7 +76,7 @@ impl Workbench {
             CellCommand::Arm(false) => self.disarm(),
             CellCommand::SetSettings(settings) => self.set_cell_settings(&settings),
             CellCommand::CaptureStation => self.capture_here(),
-            CellCommand::FindLargestArc => self.find_largest_arc(),
+            CellCommand::FindLargestArc | CellCommand::FindTip => self.search_here(),
             CellCommand::ProposeStation => self.want_proposal(),
             CellCommand::AcceptProposal => self.accept_proposal(),
             CellCommand::SkipProposal => self.skip_proposal(),

@@ -2,14 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::app::cell::{Proposal, RoughMounting, StationRoutine};
+use crate::app::cell::{Proposal, RoughMounting};
 use crate::app::jobs::{JobOutcome, Slot};
-use crate::calibrate::{Noise, Reading as MeasuredReading};
-use crate::device::{LinkState, MotionRefusal, SearchSettings};
-use crate::fit::{ArcFit, Found, Sought};
+use crate::device::{MotionRefusal, SearchSettings};
 use crate::geometry::{Base, Flange, Profile, Rigid, Transform, Vec3};
-use crate::plan::{MeasuredStation, PlannedStation, RoughCell, View};
-use crate::session::{Capture, Reading, Station};
+use crate::plan::PlannedStation;
 use crate::text::cell as words;
 
 use super::super::{NoticeKind, Workbench};
@@ -175,9 +172,7 @@ impl Workbench {
 
     /// The search that a run makes at each station, if that is what it makes.
     fn search_at_stations(&self) -> Option<SearchSettings> {
-        let settings = &self.cell.view.settings;
-        let is_ball = self.sought().is_some_and(|sought| sought.ball().is_some());
-        (is_ball && settings.routine == StationRoutine::LargestArc).then_some(settings.search)
+        self.search_of(self.cell.view.settings.routine)
     }
 
     /// The robot, the switch or the limits may have changed since.

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use crate::app::cell::{Activity, RunView, StationRoutine};
+use crate::app::cell::{Activity, RunView};
 use crate::calibrate::best_available;
 use crate::device::{DeviceError, MotionRefusal, RoutineEnd, SearchEnd};
 use crate::geometry::{Base, Flange, Transform};
@@ -107,7 +107,7 @@ impl Workbench {
                 return;
             }
             run.stage = Stage::Measuring;
-            if self.cell.view.settings.routine == StationRoutine::LargestArc {
+            if self.search_of(self.cell.view.settings.routine).is_some() {
                 self.remark_oblique_travel();
             }
         }
