@@ -2,7 +2,7 @@
 //! on either side. Where the two flanks of these heights meet, the line is on the tip.
 //!
 //! A cone's section is as much lower as it is beside the tip, on either side and however the sensor is tilted: its flanks are
-//! straight, so three heights on each are enough. What is seen beside a tip is no tip, so only the last profile is kept.
+//! straight, so a few heights on each are enough. What is seen beside a tip is no tip, so only the last profile is kept.
 
 use thiserror::Error;
 
@@ -12,10 +12,13 @@ use crate::geometry::stats::median;
 
 use super::settings::{SearchSettings, SettingsRefusal};
 
-/// Heights on each flank.
+/// Heights on each flank, and the fewest that will do on a narrow one.
 const NUM_ON_FLANK: usize = 3;
-/// Heights nearer to each other than this tell nothing, mm.
-const FINEST_MM: f64 = 0.05;
+const FEWEST_ON_FLANK: usize = 2;
+/// Heights nearer to each other than this tell nothing beside the noise of the robot, mm.
+const FINEST_MM: f64 = 0.1;
+/// By that noise another place than the nearest to the tip may seem the highest: the tip is this near to its neighbours, mm.
+const BESIDE_HIGHEST_MM: f64 = 0.3;
 /// The points of a section that are nearest to the sensor, whose mean is its height.
 const NUM_ON_TOP: usize = 3;
 
@@ -178,6 +181,7 @@ impl TipSearch {
         let widest = ends.windows(2).max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
         match widest {
             Some(gap) if gap[1] - gap[0] >= 2.0 * FINEST_MM => Wanted::Between(place_mm(f64::midpoint(gap[0], gap[1]))),
+            _ if flank.len() >= FEWEST_ON_FLANK => Wanted::Nothing,
             _ => Wanted::TooNarrow,
         }
     }
@@ -188,15 +192,16 @@ impl TipSearch {
             let flank: Vec<[f64; 2]> = self
                 .flank(side, highest)
                 .into_iter()
-                .take(NUM_ON_FLANK)
                 .map(|[distance_mm, height_mm]| [side * distance_mm, height_mm])
                 .collect();
             line_through(&flank).filter(|[_, slope]| side * slope < 0.0)
         };
         let [rising, falling] = [line(-1.0)?, line(1.0)?];
         let offset_mm = (falling[0] - rising[0]) / (rising[1] - falling[1]);
-        // The tip is between the neighbours of the highest place.
-        let nearest = |side: f64| self.flank(side, highest).first().map_or(0.0, |[distance_mm, _]| *distance_mm);
+        let nearest = |side: f64| {
+            let neighbour_mm = self.flank(side, highest).first().map_or(0.0, |[distance_mm, _]| *distance_mm);
+            neighbour_mm.max(BESIDE_HIGHEST_MM)
+        };
         (-nearest(-1.0)..=nearest(1.0)).contains(&offset_mm).then_some(highest.commanded_mm + offset_mm)
     }
 }

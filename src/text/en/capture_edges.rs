@@ -7,10 +7,10 @@ use crate::calibrate::Edge;
 pub const EDGES: &str = "Edges";
 /// Card.
 pub const TIP: &str = "Tip";
-/// Name of an edge's box.
+/// Name of an edge's box, with its captures.
 #[must_use]
-pub fn choose(edge: &str) -> String {
-    format!("Line on edge {edge}")
+pub fn choose(edge: &str, count: usize) -> String {
+    format!("Line on edge {edge}, {count} capture{}", plural(count))
 }
 /// In the box.
 #[must_use]

@@ -80,7 +80,7 @@ fn edge_boxes(ui: &mut Ui, desk: &mut Desk<'_>) {
 
 fn edge_box(ui: &mut Ui, edge: Edge, count: usize, is_chosen: bool, is_free: bool) -> bool {
     let (rect, response) = ui.allocate_exact_size(BOX_SIZE, Sense::click());
-    let name = words::choose(edge_name(edge));
+    let name = words::choose(edge_name(edge), count);
     response.widget_info(|| WidgetInfo::selected(Role::RadioButton, is_free, is_chosen, &name));
     let palette = theme::palette(ui);
     let is_hot = is_free && (response.hovered() || response.has_focus());

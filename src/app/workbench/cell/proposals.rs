@@ -6,11 +6,14 @@ use crate::app::cell::{Proposal, RoughMounting};
 use crate::app::jobs::{JobOutcome, Slot};
 use crate::device::{MotionRefusal, SearchSettings};
 use crate::geometry::{Base, Flange, Profile, Rigid, Transform, Vec3};
-use crate::plan::PlannedStation;
+use crate::plan::{Limits, PlannedStation};
 use crate::text::cell as words;
 
 use super::super::{NoticeKind, Workbench};
 use super::choose::{Basis, Chooser, Chosen, check_station};
+
+/// Further than this the sensor is not tilted about a tip, degrees.
+const MOST_TILT_AT_TIP_DEG: f64 = 18.0;
 
 /// The way to a proposal.
 #[derive(Default)]
@@ -122,7 +125,7 @@ impl Workbench {
                 let mut chooser = Chooser {
                     basis,
                     avoided: self.cell.proposing.avoided.clone(),
-                    limits: self.plan_limits,
+                    limits: self.limits_of_target(),
                     arming: self.arming(),
                     report: self.cell.view.robot.latest.clone(),
                     search: self.search_at_stations(),
@@ -133,6 +136,14 @@ impl Workbench {
             Err(reason) => self.take_no_proposal(reason),
         }
         true
+    }
+
+    /// The flanks of a tip are steep as it is: tilted as far as a ball allows, one of them is not seen any more.
+    fn limits_of_target(&self) -> Limits {
+        let limits = self.plan_limits;
+        let is_tip = self.sought().is_some_and(|sought| sought.is_tip());
+        let most_tilt_deg = if is_tip { MOST_TILT_AT_TIP_DEG } else { limits.max_tilt_deg };
+        Limits { max_tilt_deg: limits.max_tilt_deg.min(most_tilt_deg), ..limits }
     }
 
     fn take_no_proposal(&mut self, reason: String) {
@@ -213,7 +224,13 @@ impl Workbench {
     /// What the next station is chosen by.
     fn basis(&self) -> Result<Basis, String> {
         match (self.current_plan(), self.case()) {
-            (Some(plan), Some((_, _, results))) => Ok(Basis::Solved { results, planned: plan.clone() }),
+            (Some(plan), Some((_, _, results))) => {
+                let mut planned = plan.clone();
+                if self.limits_of_target() != self.plan_limits {
+                    planned.stations.clear();
+                }
+                Ok(Basis::Solved { results, planned })
+            }
             _ => self.rough_basis(),
         }
     }

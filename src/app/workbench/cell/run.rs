@@ -111,6 +111,9 @@ impl Workbench {
                 self.remark_oblique_travel();
             }
         }
+        if self.cell.measuring.is_none() {
+            self.cell.view.activity = Activity::Thinking;
+        }
         self.cell.run = Some(run);
         self.show_run();
     }
