@@ -5,7 +5,7 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use crate::calibrate::{self, BallProblem, Mount, Noise, PlateProblem, PlateStation, Problem};
-use crate::fit::{ArcOptions, ArcRefusal, EdgeOptions, Feature, Refusal, extract_arc, extract_edge};
+use crate::fit::{ArcOptions, ArcRefusal, EdgeOptions, Feature, Sought};
 use crate::geometry::{Profile, Transform};
 use crate::watch::{Cancelled, Watch};
 
@@ -32,35 +32,19 @@ pub enum NothingToSolve {
     Rgbd,
 }
 
-/// What is looked for in the profiles of a target.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Search {
-    Arc(ArcOptions),
-    Edge(EdgeOptions),
-    /// The profiles are the result.
-    Nothing,
+/// What is looked for in the profiles of a target; `None` where the profiles themselves are the result.
+#[must_use]
+pub const fn sought(target: &Target, profile_std_mm: Option<f64>) -> Option<Sought> {
+    match target {
+        Target::Ball { radius_mm, .. } => Some(Sought::Arc(ArcOptions { ball_radius_mm: *radius_mm, profile_std_mm })),
+        Target::RightAnglePlate => Some(Sought::Edge(EdgeOptions { feature: None, profile_std_mm })),
+        Target::Point => Some(Sought::Edge(EdgeOptions { feature: Some(Feature::Tip), profile_std_mm })),
+        Target::Workpiece | Target::Rgbd { .. } => None,
+    }
 }
 
-impl Search {
-    fn of(target: &Target, profile_std_mm: Option<f64>) -> Self {
-        match target {
-            Target::Ball { radius_mm, .. } => Self::Arc(ArcOptions { ball_radius_mm: *radius_mm, profile_std_mm }),
-            Target::RightAnglePlate => Self::Edge(EdgeOptions { feature: None, profile_std_mm }),
-            Target::Point => Self::Edge(EdgeOptions { feature: Some(Feature::Tip), profile_std_mm }),
-            Target::Workpiece | Target::Rgbd { .. } => Self::Nothing,
-        }
-    }
-
-    fn reading(&self, profile: &Profile) -> calibrate::Reading {
-        let refused = |refusal: Refusal| calibrate::Reading::Refused(refusal);
-        match self {
-            Self::Arc(options) => extract_arc(profile, options)
-                .map_or_else(|refusal| refused(refusal.into()), |arc| calibrate::Reading::Arc(Arc::new(arc))),
-            Self::Edge(options) => extract_edge(profile, options)
-                .map_or_else(|refusal| refused(refusal.into()), |edge| calibrate::Reading::Edge(Arc::new(edge))),
-            Self::Nothing => refused(ArcRefusal::NoBall.into()),
-        }
-    }
+fn reading(sought: Option<&Sought>, profile: &Profile) -> calibrate::Reading {
+    sought.map_or_else(|| Err(ArcRefusal::NoBall.into()), |sought| sought.find(profile)).into()
 }
 
 #[derive(Clone, Debug)]
@@ -72,7 +56,7 @@ struct MeasuredCapture {
 /// The readings of one target's captures, enabled or not.
 #[derive(Clone, Debug)]
 struct MeasuredTarget {
-    search: Search,
+    sought: Option<Sought>,
     stations: Vec<Vec<MeasuredCapture>>,
 }
 
@@ -143,8 +127,8 @@ fn measure_target(
     previous: Option<&MeasuredTarget>,
     step: &mut impl FnMut() -> Result<(), Cancelled>,
 ) -> Result<MeasuredTarget, Cancelled> {
-    let search = Search::of(target, profile_std_mm);
-    let previous = previous.filter(|measured| measured.search == search);
+    let sought = sought(target, profile_std_mm);
+    let previous = previous.filter(|measured| measured.sought == sought);
     let mut measured = Vec::with_capacity(stations.len());
     for (station_idx, station) in stations.iter().enumerate() {
         let mut captures = Vec::with_capacity(station.captures.len());
@@ -160,13 +144,13 @@ fn measure_target(
                     .cloned()
                     .unwrap_or_else(|| MeasuredCapture {
                         profile: Some(Arc::clone(profile)),
-                        reading: search.reading(profile),
+                        reading: reading(sought.as_ref(), profile),
                     }),
             });
         }
         measured.push(captures);
     }
-    Ok(MeasuredTarget { search, stations: measured })
+    Ok(MeasuredTarget { sought, stations: measured })
 }
 
 /// The problem that the enabled stations of the session's own target pose. For a fixed sensor every pose is inverted, see

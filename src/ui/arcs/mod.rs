@@ -5,6 +5,6 @@ mod list;
 pub mod model;
 mod panel;
 pub mod profile;
-mod spread;
+pub mod spread;
 
 pub use panel::{ArcsState, show};
