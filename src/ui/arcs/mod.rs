@@ -5,6 +5,7 @@ mod list;
 pub mod model;
 mod panel;
 pub mod profile;
+mod scan;
 mod spread;
 
 pub use panel::{ArcsState, show};

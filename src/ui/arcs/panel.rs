@@ -8,7 +8,7 @@ use egui::{Align, ComboBox, Frame, Key, Layout, Margin, Modifiers, ScrollArea, U
 use crate::app::{Document, Results};
 use crate::calibrate::Sweep;
 use crate::fit::CircleMethod;
-use crate::session::Target;
+use crate::session::{ScanLine, Target};
 use crate::text::arcs as text;
 use crate::text::edges::feature_name;
 use crate::ui::figures::{std_text, with_std};
@@ -16,7 +16,7 @@ use crate::ui::{PanelContext, Selection, theme, widgets};
 
 use super::list::Columns;
 use super::model::{self, CaptureView, EdgeModel, Found, StationRow};
-use super::{curve, list, profile, spread};
+use super::{curve, list, profile, scan, spread};
 
 /// Width of the list, points.
 const LIST_WIDTH: f32 = 184.0;
@@ -145,7 +145,8 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut ArcsState) 
     let columns = match document.session.target {
         Target::RightAnglePlate => Columns::EdgePoints,
         Target::Point => Columns::Tips,
-        Target::Ball { .. } | Target::Workpiece | Target::Rgbd { .. } => Columns::Arcs,
+        Target::Workpiece => Columns::Scans,
+        Target::Ball { .. } | Target::Rgbd { .. } => Columns::Arcs,
     };
     let hovered_in_list = widgets::card_with_height(
         &mut left,
@@ -220,6 +221,7 @@ fn plots(
     let is_of_arcs = matches!(document.session.target, Target::Ball { .. });
     let note = match view.as_deref() {
         Some(CaptureView::Profile(model::ProfileModel { found: Ok(Found::Edge(edge)), .. })) => Some(edge_words(edge)),
+        Some(CaptureView::Profile(model::ProfileModel { found: Ok(Found::Scan(line)), .. })) => scan_words(line),
         view => shift_words(view, state.fit),
     };
     let fit = is_of_arcs.then_some(&mut state.fit);
@@ -242,7 +244,7 @@ fn plots(
         if is_of_arcs {
             curve_card(&mut right, height, station, sweep, ball_radius_mm, selection, state, hovered_in_list);
         } else {
-            spread::card(&mut right, height, &document.session.target, rows, selection, &mut state.is_curve_fitted);
+            points_card(&mut right, height, &document.session.target, rows, selection, &mut state.is_curve_fitted);
         }
         ui.advance_cursor_after_rect(area.with_max_y(area.top() + height));
         bottom_strip(ui, sweep);
@@ -260,13 +262,29 @@ fn plots(
                 curve_card(ui, STACKED_HEIGHT, station, sweep, ball_radius_mm, selection, state, hovered_in_list);
             } else {
                 let target = &document.session.target;
-                spread::card(ui, STACKED_HEIGHT, target, rows, selection, &mut state.is_curve_fitted);
+                points_card(ui, STACKED_HEIGHT, target, rows, selection, &mut state.is_curve_fitted);
             }
             bottom_strip(ui, sweep);
         });
     }
     if state.hovered_capture != hovered_before {
         ui.ctx().request_repaint();
+    }
+}
+
+/// Beside a profile without a curve: all profiles of its scan, or all points of the target.
+fn points_card(
+    ui: &mut Ui,
+    height: f32,
+    target: &Target,
+    rows: &[StationRow],
+    selection: &mut Selection,
+    is_fitted: &mut bool,
+) {
+    if *target == Target::Workpiece {
+        scan::card(ui, height, &rows[selection.station_idx], selection, is_fitted);
+    } else {
+        spread::card(ui, height, target, rows, selection, is_fitted);
     }
 }
 
@@ -362,6 +380,13 @@ fn edge_words(edge: &EdgeModel) -> String {
     text::edge_found(feature_name(edge.feature), &x, &z)
 }
 
+/// How much of a profile was seen, and where.
+fn scan_words(line: &ScanLine) -> Option<String> {
+    let range = line.range_mm?;
+    let [x, z] = [range.x_mm, range.z_mm].map(|ends| ends.map(|end| widgets::fixed(end, 2)));
+    Some(text::scan_line(line.num_valid, line.num_points, &x, &z))
+}
+
 fn profile_card(
     ui: &mut Ui,
     title: &str,
@@ -380,10 +405,11 @@ fn profile_card(
         ui.spacing_mut().interact_size.y = 22.0;
         ui.spacing_mut().button_padding = egui::vec2(8.0, 2.0);
         ui.spacing_mut().item_spacing.x = 4.0;
-        // Where nothing was found all points are shown anyway.
-        let near = found.map(|found| match found {
-            Found::Section(_) => (text::ARC_ONLY, text::ARC_ONLY_HINT),
-            Found::Edge(edge) => (feature_name(edge.feature), text::EDGE_ONLY_HINT),
+        // Where nothing was found, or all points count, all are shown anyway.
+        let near = found.and_then(|found| match found {
+            Found::Section(_) => Some((text::ARC_ONLY, text::ARC_ONLY_HINT)),
+            Found::Edge(edge) => Some((feature_name(edge.feature), text::EDGE_ONLY_HINT)),
+            Found::Scan(_) => None,
         });
         if let Some((near_name, near_hint)) = near {
             let whole_hint = text::whole_profile_hint(target);
