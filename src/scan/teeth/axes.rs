@@ -2,7 +2,7 @@
 
 use nalgebra::{Vector2, Vector3};
 
-use crate::geometry::{Mat3, Vec3};
+use crate::geometry::{Mat3, Scatter, Vec3};
 use crate::scan::ScanError;
 use crate::scan::linear::{Row, solve};
 use crate::scan::neighbourhood::{Sample, common_direction};
@@ -38,12 +38,7 @@ impl Axes {
             ridge
         };
         let across = |point: &Vec3| point - ridge * ridge.dot(point);
-        let flat: Vec<Vec3> = sample.points.iter().map(across).collect();
-        #[expect(clippy::cast_precision_loss, reason = "a count of points")]
-        let mean = flat.iter().sum::<Vec3>() / flat.len() as f64;
-        let scatter = flat.iter().fold(Mat3::zeros(), |sum, point| sum + (point - mean) * (point - mean).transpose());
-        let eigen = scatter.symmetric_eigen();
-        let along = eigen.eigenvectors.column(eigen.eigenvalues.imax()).into_owned();
+        let along = Scatter::of(sample.points.iter().map(across)).map_or_else(Vec3::x, |scatter| scatter.widest);
         let up = ridge.cross(&along);
         let up = if up.dot(&toward_sensor) < 0.0 { -up } else { up };
         Ok(Self { along: up.cross(&ridge), up, ridge })
