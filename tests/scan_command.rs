@@ -1,19 +1,22 @@
 //! `handeye scan` as a shell sees it: figures against what was simulated, and files that are wrong.
 #![expect(clippy::expect_used, reason = "a test that finds nothing to check must fail")]
 
+mod shell;
+
 use std::fs;
-use std::process::{Command, Output};
+use std::process::Output;
 
 use handeye::scene::{CYLINDER_DIAMETER_MM, PITCH_MM, PartKind, TOOTH_HEIGHT_MM};
-use handeye::session::{self, Session};
+use handeye::session::Session;
 use handeye::simulate::{SimulationOptions, SimulationTarget, simulate};
 use serde_json::{Value, json};
+use shell::{Files, assert_refused, handeye};
 
 /// Estimates and truth differ by more than this many σ once in some ten thousand times.
 const WITHIN_STD: f64 = 4.0;
 
 fn scan(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_handeye")).arg("scan").args(args).output().expect("the binary starts")
+    handeye("scan", args)
 }
 
 fn simulated(kind: PartKind, seed: u64) -> Session {
@@ -24,38 +27,12 @@ fn simulated(kind: PartKind, seed: u64) -> Session {
     simulate(&SimulationOptions { seed, num_points: 300, step_mm, num_steps, ..usual })
 }
 
-struct Files {
-    folder: tempfile::TempDir,
-}
-
-impl Files {
-    fn new() -> Self {
-        Self { folder: tempfile::tempdir().expect("a folder") }
-    }
-
-    fn path(&self, name: &str) -> String {
-        self.folder.path().join(name).to_str().expect("UTF-8").to_owned()
-    }
-
-    fn session(&self, name: &str, session: &Session) -> String {
-        let path = self.path(name);
-        session::save(session, path.as_ref()).expect("written");
-        path
-    }
-
-    fn text(&self, name: &str, text: &str) -> String {
-        let path = self.path(name);
-        fs::write(&path, text).expect("written");
-        path
-    }
-
-    /// The truth of a session, as another program would write it: sixteen numbers.
-    fn truth(&self, session: &Session) -> String {
-        let matrix = session.truth.as_ref().expect("simulated").flange_from_sensor.matrix();
-        let rows: Vec<String> =
-            matrix.row_iter().map(|row| row.iter().map(f64::to_string).collect::<Vec<_>>().join(" ")).collect();
-        self.text("truth.txt", &rows.join("\n"))
-    }
+/// The truth of a session, as another program would write it: sixteen numbers.
+fn truth(files: &Files, session: &Session) -> String {
+    let matrix = session.truth.as_ref().expect("simulated").flange_from_sensor.matrix();
+    let rows: Vec<String> =
+        matrix.row_iter().map(|row| row.iter().map(f64::to_string).collect::<Vec<_>>().join(" ")).collect();
+    files.text("truth.txt", &rows.join("\n"))
 }
 
 fn measured(args: &[&str]) -> Value {
@@ -81,7 +58,7 @@ fn the_faces_of_a_square_block_stand_at_a_right_angle() {
     for seed in 1..=3 {
         let session = simulated(PartKind::Square, seed);
         let file =
-            measured(&[&files.session("part.json", &session), "--calibration", &files.truth(&session), "--json"]);
+            measured(&[&files.session("part.json", &session), "--calibration", &truth(&files, &session), "--json"]);
         assert_eq!((&file["format"], &file["version"]), (&"handeye-scan".into(), &1.into()));
         assert_eq!((&file["scan"], &file["calibration"]), (&"all scans".into(), &"truth.txt".into()));
         let planes = file["planes"].as_array().expect("a list");
@@ -107,7 +84,7 @@ fn pitch_height_and_diameter_are_those_of_the_simulated_parts() {
     for seed in 1..=3 {
         let session = simulated(PartKind::Teeth, seed);
         let file =
-            measured(&[&files.session("part.json", &session), "--calibration", &files.truth(&session), "--json"]);
+            measured(&[&files.session("part.json", &session), "--calibration", &truth(&files, &session), "--json"]);
         let teeth = &file["teeth"];
         assert_eq!(teeth["teeth"].as_array().map(Vec::len), Some(5), "{teeth:#}");
         for (name, nominal) in [("pitch_mm", PITCH_MM), ("height_mm", TOOTH_HEIGHT_MM)] {
@@ -121,7 +98,7 @@ fn pitch_height_and_diameter_are_those_of_the_simulated_parts() {
         }
         let session = simulated(PartKind::Cylinder, seed);
         let file =
-            measured(&[&files.session("part.json", &session), "--calibration", &files.truth(&session), "--json"]);
+            measured(&[&files.session("part.json", &session), "--calibration", &truth(&files, &session), "--json"]);
         let round = &file["round"];
         assert_eq!((&round["kind"], &round["nominal_mm"]), (&"cylinder".into(), &CYLINDER_DIAMETER_MM.into()));
         is_within_std(number(&round["diameter_mm"]), CYLINDER_DIAMETER_MM, number(&round["diameter_std_mm"]), 0.05);
@@ -139,10 +116,7 @@ fn a_wrong_calibration_shows_and_a_result_file_serves() {
         ..SimulationOptions::of(SimulationTarget::Part(PartKind::Plate))
     });
     let plate_path = files.session("plate.json", &plate);
-    let solve = Command::new(env!("CARGO_BIN_EXE_handeye"))
-        .args(["solve", &plate_path, "--json"])
-        .output()
-        .expect("the binary starts");
+    let solve = handeye("solve", &[&plate_path, "--json"]);
     let result = files.text("result.json", std::str::from_utf8(&solve.stdout).expect("UTF-8"));
     let file = measured(&[&part_path, "--calibration", &result, "--json"]);
     assert_eq!(file["calibration"], "result.json: plate-bundle");
@@ -155,7 +129,7 @@ fn a_wrong_calibration_shows_and_a_result_file_serves() {
         truth.flange_from_sensor =
             handeye::geometry::Transform::from_parts(true_one.translation_mm(), true_one.rotation() * off);
     }
-    let off = measured(&[&part_path, "--calibration", &files.truth(&turned), "--json"]);
+    let off = measured(&[&part_path, "--calibration", &truth(&files, &turned), "--json"]);
     let rms = |file: &Value| number(&file["planes"][0]["distances_mm"]["rms"]);
     assert!(rms(&off) > 3.0 * rms(&file), "{} {}", rms(&off), rms(&file));
 }
@@ -164,7 +138,7 @@ fn a_wrong_calibration_shows_and_a_result_file_serves() {
 fn exported_points_are_measured_like_the_session() {
     let files = Files::new();
     let session = simulated(PartKind::Square, 5);
-    let (path, truth) = (files.session("part.json", &session), files.truth(&session));
+    let (path, truth) = (files.session("part.json", &session), truth(&files, &session));
     for name in ["part.ply", "part.csv"] {
         let out = files.path(name);
         let from_session = measured(&[&path, "--calibration", &truth, "--out", &out, "--json"]);
@@ -178,13 +152,7 @@ fn exported_points_are_measured_like_the_session() {
 
 #[track_caller]
 fn refused(args: &[&str], status: i32, fragments: &[&str]) {
-    let output = scan(args);
-    let line = String::from_utf8(output.stderr).expect("UTF-8");
-    assert_eq!(output.status.code(), Some(status), "{line}");
-    assert_eq!(line.trim_end().lines().count(), 1, "{line}");
-    for fragment in fragments {
-        assert!(line.contains(fragment), "{fragment:?} is not in {line:?}");
-    }
+    assert_refused(&scan(args), status, fragments);
 }
 
 #[test]
@@ -225,7 +193,7 @@ fn what_cannot_be_scanned_is_refused_with_a_way_out() {
     let session = simulated(PartKind::Square, 7);
     let part = files.session("part.json", &session);
     refused(&[&part], 3, &["no calibration", "--calibration RESULT.json"]);
-    let truth = files.truth(&session);
+    let truth = truth(&files, &session);
     refused(&[&part, "--calibration", &truth, "--scan", "lid"], 2, &["--scan", "lid", "all scans, scan 1, scan 2"]);
     refused(&[&part, "--calibration", &truth, "--out", &files.path("part.obj")], 2, &[".obj", "expected .ply or .csv"]);
     let ball = simulate(&SimulationOptions { num_stations: 4, num_steps: 1, ..SimulationOptions::default() });

@@ -7,5 +7,6 @@ mod panel;
 pub mod profile;
 mod scan;
 mod spread;
+mod strip;
 
 pub use panel::{ArcsState, show};

@@ -18,6 +18,8 @@ use super::colors::region_color;
 
 /// Width of the histogram, as a part of the whole.
 const HISTOGRAM_PART: f32 = 0.3;
+/// Width from which the histogram has room beside the planes.
+const SIDE_BY_SIDE_FROM: f32 = 860.0;
 /// Angles shown; those of the largest planes come first.
 const MOST_ANGLES: usize = 6;
 
@@ -37,10 +39,17 @@ pub(super) fn show(
     height: f32,
     state: &mut PlanesState,
 ) {
-    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
-    let (left, right) = rect.split_left_right_at_fraction(1.0 - HISTOGRAM_PART);
+    let room = vec2(ui.available_width(), height);
+    let (rect, _) = ui.allocate_exact_size(room, Sense::hover());
+    // In a narrow window the histogram stands below, so that no equation is cut.
+    let (left, right) = if room.x < SIDE_BY_SIDE_FROM {
+        (rect, ui.allocate_exact_size(room, Sense::hover()).0)
+    } else {
+        let (left, right) = rect.split_left_right_at_fraction(1.0 - HISTOGRAM_PART);
+        (left.with_max_x(left.right() - theme::GAP / 2.0), right.with_min_x(right.left() + theme::GAP / 2.0))
+    };
     let within = |ui: &mut Ui, rect: Rect| ui.new_child(UiBuilder::new().max_rect(rect));
-    let mut left = within(ui, left.with_max_x(left.right() - theme::GAP / 2.0));
+    let mut left = within(ui, left);
     let (mut find, mut undo) = (false, false);
     let can_undo = context.workbench.scans().can_undo_regions();
     widgets::card_with_height(
@@ -68,7 +77,7 @@ pub(super) fn show(
     if undo {
         ask(context, ScanCommand::UndoRegions);
     }
-    let mut right = within(ui, right.with_min_x(right.left() + theme::GAP / 2.0));
+    let mut right = within(ui, right);
     let region_idx = state.region_idx.filter(|idx| *idx < scan.regions.len());
     let shown = region_idx.map_or(words::ALL_REGIONS, |idx| scan.regions[idx].name.as_str());
     let num_drawn = scan.regions.iter().map(|region| region.distances_mm.len()).max().unwrap_or(0);
