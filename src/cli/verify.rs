@@ -59,7 +59,7 @@ fn verified(args: &VerifyArgs) -> Result<String, Refusal> {
         Err(_) => None,
     };
     let solved = own.as_ref().map(|(problem, results)| (problem, results.as_slice()));
-    let found = verification(&session, &measured, solved, &given, &mut Unwatched)
+    let found = verification(&session, &measured, solved, &given, &[], &mut Unwatched)
         .map_err(|cancelled| nothing(cancelled.to_string()))?;
     if found.calibrations.is_empty() {
         let results = own.as_ref().map_or(&[][..], |(_, results)| results.as_slice());

@@ -45,6 +45,13 @@ pub(super) struct LiveCell {
     remarked_robot_of: Option<u64>,
 }
 
+impl LiveCell {
+    /// Whether a routine is under way, whose captures come into the document one by one.
+    pub(super) const fn is_measuring(&self) -> bool {
+        self.measuring.is_some()
+    }
+}
+
 impl Workbench {
     /// The live cell as it stands.
     #[must_use]
