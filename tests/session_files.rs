@@ -213,11 +213,29 @@ fn files_that_are_no_session_at_all_are_refused() {
     check_refused("[]", &["top level: found an empty list, expected a session"]);
     check_refused("null", &["top level: found null"]);
     check_refused("{\"format\": \"handeye-session\"", &["line 1, column 28: found the end of the file"]);
-    check_refused(&VALID[..VALID.len() / 2], &["found the end of the file, expected JSON"]);
+    check_refused(
+        &VALID[..VALID.len() / 2],
+        &["found the end of the file", "the file was cut off", "take it from a copy"],
+    );
     check_refused(&format!("{VALID} x"), &["found `x`", "trailing characters"]);
     check_refused(&"[".repeat(100_000), &["recursion limit exceeded"]);
     check_refused(&format!("{{\"deep\": {}", "{\"a\":".repeat(10_000)), &["recursion limit exceeded"]);
-    check_refused("x,y,z\n1,2,3\n", &["line 1, column 1: found `x,y,z`"]);
+    check_refused(
+        "x,y,z\n1,2,3\n",
+        &["line 1, column 1: found `x,y,z`", "a number, text in quotes, a list or an object"],
+    );
+    for (written, shown) in [
+        ("NaN", "NaN"),
+        ("nan", "nan"),
+        ("-Infinity", "-Infinity"),
+        ("inf", "inf"),
+        ("1e999", "1e999"),
+        ("-2.5E400", "-2.5E400"),
+    ] {
+        let json = VALID.replacen("\"z_mm\": [0.25", &format!("\"z_mm\": [{written}"), 1);
+        assert!(json.contains(written), "the valid session has changed");
+        check_refused(&json, &[&format!("found {shown}, expected a finite number"), "write null in z_mm", "line "]);
+    }
 }
 
 #[test]

@@ -96,8 +96,9 @@ pub enum SolveError {
     },
     /// Two lines in space and a sensor on the flange need more.
     #[error(
-        "found {found_p} points on edge p and {found_q} on edge q; at least {needed} on each are needed, with different \
+        "found {found_p} point{} on edge p and {found_q} on edge q; at least {needed} on each are needed, with different \
          orientations{alone}{because}",
+        plural(*found_p),
         alone = one_edge_alone(*found_p, *found_q),
         because = because(refusal.as_ref())
     )]

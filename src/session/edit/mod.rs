@@ -225,6 +225,14 @@ pub enum EditRefusal {
         /// The name.
         name: String,
     },
+    /// Imported stations say which edge of a plate they saw, and the session is about something else.
+    #[error(
+        "found {num_stations} stations with an edge of a plate, needed a session of a right-angle plate; choose the plate as the target, or ignore the column edge"
+    )]
+    EdgesWithoutPlate {
+        /// How many.
+        num_stations: usize,
+    },
     /// A sequence cannot stand beside other targets.
     #[error("found a sequence of an RGB-D camera as a further target, needed a target with stations")]
     NoSequenceAsFurther,
