@@ -79,8 +79,9 @@ pub enum SolveError {
     },
     /// The readings leave a combination of the unknowns free.
     #[error(
-        "the stations leave at least one direction free (condition number {condition:.1e}): add stations that are tilted \
-         differently, and with the target elsewhere in the profile"
+        "the stations leave at least one direction free{}: add more stations, tilted differently and with the target \
+         elsewhere in the profile",
+        if condition.is_finite() { format!(" (condition number {condition:.1e})") } else { String::new() }
     )]
     Undetermined {
         /// Condition number of the scaled normal equations.

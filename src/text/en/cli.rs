@@ -2,7 +2,7 @@
 
 use crate::calibrate::{Method, Mount, Verdict, VerdictReason, Warning};
 use crate::diagnose::Reason;
-use crate::session::Session;
+use crate::session::{FurtherTarget, Session};
 
 use super::diagnosis::fault_message;
 use super::{method_name, method_short_name, plural, verdict_name, warning_message};
@@ -41,6 +41,18 @@ pub fn no_such_station(label: &str, session: &Session) -> String {
 #[must_use]
 pub fn answer_head(method: Method) -> String {
     format!("Answer: {} ({})", method_name(method), method.id())
+}
+
+/// The session has more targets than the one that is solved here.
+#[must_use]
+pub fn further_line(further: &[FurtherTarget]) -> String {
+    let names: Vec<&str> = further.iter().map(|further| further.name.as_str()).collect();
+    format!(
+        "not used here: the further target{} {}; `handeye verify` judges this result on {}, and solves all together",
+        plural(names.len()),
+        names.join(", "),
+        if names.len() == 1 { "it" } else { "them" }
+    )
 }
 
 /// Nothing is wrong with a result that is not good all the same.

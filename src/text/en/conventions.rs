@@ -1,9 +1,40 @@
 //! Wording of pose notations: their names, the bar above the pose table, and its dialogs.
 
+use nalgebra::UnitQuaternion;
+
 use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
-use crate::geometry::{AngleOrder, PoseConvention, PoseNotation};
+use crate::geometry::{AngleOrder, Mat3, PoseConvention, PoseNotation};
+use crate::text::digits;
 
 use super::plural;
+
+/// Near gimbal lock two of the angles may be anything together: which ones, and how well the orientation as a whole is
+/// known, where the σ of the angles would say too little of it.
+#[must_use]
+pub fn not_known_apart(
+    convention: &PoseConvention,
+    rotation: &UnitQuaternion<f64>,
+    rotation_covariance: &Mat3,
+) -> Option<String> {
+    /// An angle this much less known than the orientation owes it to the lock: it is within 15° then.
+    const RATIO: f64 = 4.0;
+    let whole_deg = rotation_covariance.symmetric_eigenvalues().max().max(0.0).sqrt().to_degrees();
+    let angles_std = convention.angles_std_deg(rotation, rotation_covariance);
+    let poorly_known: Vec<&str> = convention
+        .angle_names
+        .into_iter()
+        .zip(angles_std)
+        .filter(|(_, std_deg)| *std_deg > RATIO * whole_deg)
+        .map(|(name, _)| name)
+        .collect();
+    (poorly_known.len() > 1).then(|| {
+        format!(
+            "near gimbal lock: {} are not known apart; the orientation as a whole is, to ± {}° about its weakest axis",
+            poorly_known.join(" and "),
+            digits::value(whole_deg, Some(whole_deg))
+        )
+    })
+}
 
 /// Before the choice of a notation.
 pub const SHOWN_AS: &str = "Shown as";
