@@ -35,21 +35,18 @@ type Row<'a> = (&'a str, usize, Vec3, Vec3, Vec3);
 
 fn method_table(out: &mut String, session: &Session, solution: &Solution) {
     let frame = target_frame(solution.mount);
-    let (target, error, rows): (_, _, Vec<Row<'_>>) = match &solution.plate {
-        Some(plate) => {
-            let rows = plate.points.iter().map(|point| {
-                let (in_sensor_mm, in_base_mm) = (point.point_in_sensor_mm, point.point_in_base_mm);
-                (point.label.as_str(), point.station_idx, in_sensor_mm, in_base_mm, point.off_edge_mm)
-            });
-            ("edge point", "off the edge", rows.collect())
-        }
-        None => {
-            let rows = solution.stations.iter().map(|station| {
-                let (in_sensor_mm, in_base_mm) = (station.target_in_sensor_mm, station.target_in_base_mm);
-                (station.label.as_str(), station.station_idx, in_sensor_mm, in_base_mm, station.error_from_first_mm)
-            });
-            (if solution.method == Method::FixedPoint { "tip" } else { "ball" }, "error", rows.collect())
-        }
+    let (target, error, rows): (_, _, Vec<Row<'_>>) = if let Some(plate) = &solution.plate {
+        let rows = plate.points.iter().map(|point| {
+            let (in_sensor_mm, in_base_mm) = (point.point_in_sensor_mm, point.point_in_base_mm);
+            (point.label.as_str(), point.station_idx, in_sensor_mm, in_base_mm, point.off_edge_mm)
+        });
+        ("edge point", "off the edge", rows.collect())
+    } else {
+        let rows = solution.stations.iter().map(|station| {
+            let (in_sensor_mm, in_base_mm) = (station.target_in_sensor_mm, station.target_in_base_mm);
+            (station.label.as_str(), station.station_idx, in_sensor_mm, in_base_mm, station.error_from_first_mm)
+        });
+        (if solution.method == Method::FixedPoint { "tip" } else { "ball" }, "error", rows.collect())
     };
     writeln!(
         out,

@@ -342,3 +342,31 @@ pub fn convention_detail(convention: &PoseConvention) -> String {
         order => format!("{}, {order}", convention.formula),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn near_gimbal_lock_two_angles_are_said_not_to_be_known_apart() {
+        // A tenth of a degree about every axis.
+        let covariance = Mat3::identity() * 0.1_f64.to_radians().powi(2);
+        for (id, angles_deg, expected) in [
+            ("fanuc-wpr", [-146.1, -88.0, 147.9], Some("W and R")),
+            ("fanuc-wpr", [1.8, -1.5, 91.2], None),
+            ("fanuc-wpr", [10.0, 70.0, 20.0], None),
+            ("kuka-abc", [20.0, 88.5, 10.0], Some("A and C")),
+            ("ur-rotvec", [1.0, 2.0, 0.5], None),
+        ] {
+            let convention = PoseConvention::by_id(id).expect("known");
+            let rotation = convention.rotation_from_angles_deg(angles_deg);
+            let remark = not_known_apart(convention, &rotation, &covariance);
+            let expected = expected.map(|angles| {
+                format!(
+                    "near gimbal lock: {angles} are not known apart; the orientation as a whole is, to ± 0.10° about its weakest axis"
+                )
+            });
+            assert_eq!(remark, expected, "{id} {angles_deg:?}");
+        }
+    }
+}
