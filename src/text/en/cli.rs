@@ -46,12 +46,15 @@ pub fn answer_head(method: Method) -> String {
 /// The session has more targets than the one that is solved here.
 #[must_use]
 pub fn further_line(further: &[FurtherTarget]) -> String {
-    let names: Vec<&str> = further.iter().map(|further| further.name.as_str()).collect();
+    /// More are counted.
+    const MAX_NAMES: usize = 5;
+    let mut names: Vec<String> = further.iter().take(MAX_NAMES).map(|further| further.name.clone()).collect();
+    names.extend((further.len() > MAX_NAMES).then(|| format!("{} more", further.len() - MAX_NAMES)));
     format!(
         "not used here: the further target{} {}; `handeye verify` judges this result on {}, and solves all together",
-        plural(names.len()),
+        plural(further.len()),
         names.join(", "),
-        if names.len() == 1 { "it" } else { "them" }
+        if further.len() == 1 { "it" } else { "them" }
     )
 }
 
