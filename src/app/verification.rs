@@ -2,7 +2,7 @@
 
 use crate::calibrate::{MethodResult, Problem};
 use crate::session::model::UnknownFields;
-use crate::session::{FurtherTarget, Known, Measured, Session, Target, problem_of};
+use crate::session::{Edit, FurtherTarget, Known, Measured, Session, Target, problem_of};
 use crate::text::verify::{own_target_name, target_name_from_file};
 use crate::verify::{Calibration, TargetCase, Verification, verify};
 use crate::watch::{Cancelled, Watch};
@@ -84,11 +84,12 @@ pub fn verification(
     verify(cases, given, watch)
 }
 
-/// A session's own target as a further one of another session. The name that it gets is free among those there once the edit
-/// is made.
+/// All that a session measured, its own target and its further ones, as further targets of another session. The names that
+/// they get are free among those there once the edit is made.
 #[must_use]
-pub fn as_further(session: Session, file_name: &str) -> FurtherTarget {
-    let Session { name, target, known, stations, .. } = session;
+pub fn adding_targets_of(session: Session, file_name: &str) -> Edit {
+    let Session { name, target, known, stations, further, .. } = session;
     let name = if name.trim().is_empty() { target_name_from_file(file_name) } else { name };
-    FurtherTarget { name, target, known, stations, unknown: UnknownFields::new() }
+    let own = FurtherTarget { name, target, known, stations, unknown: UnknownFields::new() };
+    Edit::Several(std::iter::once(own).chain(further).map(|target| Edit::AddFurther(Box::new(target))).collect())
 }

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use crate::app::jobs::JobOutcome;
 use crate::app::study::Study;
-use crate::app::verification::{as_further, solved_further, verification};
-use crate::session::{self, Edit, Session, SessionError};
+use crate::app::verification::{adding_targets_of, solved_further, verification};
+use crate::session::{self, Session, SessionError};
 use crate::text::verify as words;
 use crate::verify::{Calibration, Origin, Verification};
 
@@ -100,7 +100,7 @@ impl Workbench {
             Ok(other) if other.mount != document.session.mount => {
                 self.notify(NoticeKind::Error, words::other_mount(&shown(&added.path)));
             }
-            Ok(other) => self.edit(&Edit::AddFurther(Box::new(as_further(other, &file_name))), None),
+            Ok(other) => self.edit(&adding_targets_of(other, &file_name), None),
         }
     }
 }
