@@ -11,17 +11,21 @@ use handeye::app::Command;
 use handeye::app::cell::{
     Activity, CellCommand, CellSettings, CellView, LinkView, LiveProfile, Proposal, ReplayView, RoughMounting, RunView,
 };
+use handeye::calibrate::SideChoice;
 use handeye::device::search::{CurveEstimate, SearchPoint};
 use handeye::device::sim::SimOptions;
 use handeye::device::{
     DeviceError, Endpoint, LinkState, MotionRefusal, ProfileReading, Readiness, RobotKind, RobotReport, RobotSetup,
     RoutineEnd, SearchEnd, SearchPhase, SearchReport, SensorKind, SensorSetup,
 };
-use handeye::fit::{ArcOptions, ArcRefusal, extract_arc};
+use handeye::fit::{ArcOptions, ArcRefusal, Sought};
 use handeye::geometry::{Profile, Transform, Vec3};
 use handeye::plan::PlannedStation;
-use handeye::session::{self, Session, Target, samples};
-use handeye::text::{capture as words, capture_settings as setting_words, shell as shell_words};
+use handeye::session::model::UnknownFields;
+use handeye::session::{self, Capture, Edge, Reading, Session, Station, Target, samples, sought};
+use handeye::text::{
+    capture as words, capture_edges as words_of_edges, capture_settings as setting_words, shell as shell_words,
+};
 use handeye::ui::actions::Action;
 use handeye::ui::capture::{self, CaptureState, CellMemory, View};
 use handeye::ui::{self, Start, Step, Window};
@@ -55,6 +59,7 @@ impl Bench {
             has_solution: false,
             outlook: None,
             has_other_mounting: false,
+            results: None,
         };
         let (memory, state) = (&mut bench.memory, &mut bench.state);
         capture::show_view(ui, view, memory, state, &mut bench.commands, &mut bench.actions);
@@ -115,9 +120,10 @@ fn live(section_mm: f64) -> LiveProfile {
     let noisy = |(idx, x): (usize, &f64)| Some(z_at(x) + 0.004 * f64::from(u8::try_from(idx * 37 % 11).unwrap_or(0)));
     let z_mm: Vec<_> = x_mm.iter().enumerate().map(noisy).collect();
     let profile = Arc::new(Profile::new(x_mm, &z_mm).expect("valid"));
-    let arc = extract_arc(&profile, &ArcOptions { ball_radius_mm: 15.0, profile_std_mm: None }).map(Arc::new);
+    let ball = Sought::Arc(ArcOptions { ball_radius_mm: 15.0, profile_std_mm: None });
+    let found = ball.find(&profile);
     let reading = ProfileReading { profile, trigger_count: 7, received_at: Instant::now() };
-    LiveProfile { reading, arc, rate_hz: 30.0 }
+    LiveProfile { reading, found, rate_hz: 30.0 }
 }
 
 fn robot_setup(kind: RobotKind) -> RobotSetup {
@@ -211,7 +217,7 @@ fn every_button_asks_for_exactly_its_command() {
         (paused, words::RESUME_NAME, CellCommand::ResumeRun),
         (replaying, words::END_REPLAY, CellCommand::EndReplay),
         (CellView { is_practice: true, ..armed() }, words::END_PRACTICE, CellCommand::EndPractice),
-        (CellView::default(), words::PRACTISE_SHORT, CellCommand::Practise),
+        (CellView::default(), words::PRACTISE_SHORT, CellCommand::Practise(None)),
         (CellView { run: Some(RunView { num_done: 8, ..RUN }), ..armed() }, words::DISARM, CellCommand::Arm(false)),
     ] {
         assert_eq!(Bench::new(view).asked_by(name), cell(command), "{name}");
@@ -319,7 +325,7 @@ fn states_are_told_in_words() {
         latest: Some(report(Readiness::ReadOnly)),
     };
     let refusal = MotionRefusal::TooFar { found_mm: 512.0, max_mm: 400.0 };
-    let no_arc = LiveProfile { arc: Err(ArcRefusal::TooFewPoints { found: 3, needed: 20 }), ..live(13.5) };
+    let no_arc = LiveProfile { found: Err(ArcRefusal::TooFewPoints { found: 3, needed: 20 }.into()), ..live(13.5) };
     let reason = ArcRefusal::TooFewPoints { found: 3, needed: 20 }.to_string();
     let never_still = RoutineEnd::NeverStill { moved_mm: Some(0.4) };
     for (view, sentence) in [
@@ -518,6 +524,109 @@ fn every_state_fits_every_size_and_asks_for_nothing_by_itself() {
     }
 }
 
+/// A plate's surface over its table: a step.
+fn live_of_step() -> LiveProfile {
+    let x_mm: Vec<f64> = (-200..=200_i16).map(|idx| f64::from(idx) * 0.15).collect();
+    let noisy = |(idx, x): (usize, &f64)| {
+        let z_mm = if *x > 4.0 { 0.05 * x } else { 10.0 + 0.05 * x };
+        // The camera does not see the table right behind the step.
+        let is_in_shadow = *x <= 4.0 && *x > 1.0;
+        (!is_in_shadow).then(|| z_mm + 0.004 * f64::from(u8::try_from(idx * 37 % 11).unwrap_or(0)))
+    };
+    let z_mm: Vec<_> = x_mm.iter().enumerate().map(noisy).collect();
+    let profile = Arc::new(Profile::new(x_mm, &z_mm).expect("valid"));
+    let found = sought(&Target::RightAnglePlate, None).expect("a plate has edges").find(&profile);
+    assert!(found.is_ok(), "{found:?}");
+    let reading = ProfileReading { profile, trigger_count: 7, received_at: Instant::now() };
+    LiveProfile { reading, found, rate_hz: 30.0 }
+}
+
+/// A session with so many captures on each edge, p first.
+fn plate_session(num_on_edges: [usize; 2]) -> Session {
+    let live = live_of_step();
+    let station = |edge: Edge, idx: usize| Station {
+        label: format!("{}{}", edge.symbol(), idx + 1),
+        enabled: true,
+        side: SideChoice::Auto,
+        edge: Some(edge),
+        captures: vec![Capture {
+            base_from_flange: Transform::identity(),
+            written_angles: None,
+            reading: Reading::Profile(Arc::clone(&live.reading.profile)),
+            step_mm: None,
+            unknown: UnknownFields::new(),
+        }],
+        unknown: UnknownFields::new(),
+    };
+    let [p, q] = num_on_edges;
+    let stations = (0..p).map(|idx| station(Edge::P, idx)).chain((0..q).map(|idx| station(Edge::Q, idx)));
+    Session { stations: stations.collect(), target: Target::RightAnglePlate, ..sample() }
+}
+
+fn at_plate(num_on_edges: [usize; 2], view: CellView) -> Bench {
+    let live = view.live.is_some().then(live_of_step);
+    Bench { session: Some(plate_session(num_on_edges)), ..Bench::new(CellView { live, ..view }) }
+}
+
+#[test]
+fn a_plate_is_captured_by_its_edges() {
+    // The edge is chosen by a click as well as by its key.
+    let chosen = |commands: &[Command]| match commands {
+        [Command::Cell(command)] => match command.as_ref() {
+            CellCommand::SetSettings(settings) => Some(settings.edge),
+            _ => None,
+        },
+        _ => None,
+    };
+    let commands = at_plate([2, 0], armed()).asked_by(&words_of_edges::choose("q", 0));
+    assert_eq!(chosen(&commands), Some(Edge::Q), "{commands:?}");
+    let mut harness = at_plate([2, 0], armed()).harness();
+    harness.key_press(Key::Q);
+    harness.run_steps(1);
+    assert_eq!(chosen(&harness.state().commands), Some(Edge::Q));
+
+    let name = words::capture_name(&Target::RightAnglePlate);
+    let commands = at_plate([2, 1], armed()).asked_by(name);
+    assert_eq!(commands, [Command::Cell(Box::new(CellCommand::CaptureStation))]);
+    let practice = CellView { is_practice: true, ..armed() };
+    let commands = at_plate([1, 0], practice).asked_by(words_of_edges::jog_to(Edge::Q));
+    assert_eq!(commands, [Command::Cell(Box::new(CellCommand::JogToEdge(Edge::Q)))]);
+
+    // What only a ball has is not offered, and what is still needed is told.
+    let harness = at_plate([4, 6], armed()).harness();
+    for absent in [words::FIND, words::LARGEST_ARC, words::SEARCH] {
+        assert!(harness.query_by_label(absent).is_none(), "{absent}");
+    }
+    harness.get_by_label(&words_of_edges::needed_on_edges([2, 0]));
+    harness.get_by_label(&words_of_edges::choose("p", 4));
+}
+
+#[test]
+fn an_edge_that_is_not_seen_is_told_before_it_is_captured() {
+    let refusal = sought(&Target::RightAnglePlate, None).expect("edges").find(&live(13.5).reading.profile);
+    let unseen = LiveProfile { found: Err(refusal.expect_err("a ball has no edge")), ..live(13.5) };
+    let mut bench = at_plate([2, 2], armed());
+    bench.cell.live = Some(unseen);
+    let harness = bench.harness();
+    assert!(harness.query_by_label_contains(words_of_edges::NOT_SEEN).is_some());
+}
+
+#[test]
+fn a_tip_is_searched() {
+    let bench = Bench {
+        session: Some(Session { stations: Vec::new(), target: Target::Point, ..sample() }),
+        ..Bench::new(armed())
+    };
+    let commands = bench.asked_by(words_of_edges::FIND);
+    assert_eq!(commands, [Command::Cell(Box::new(CellCommand::FindTip))]);
+}
+
+#[test]
+fn a_plate_looks_as_it_did() {
+    let bench = at_plate([4, 6], CellView { is_practice: true, ..armed() });
+    pictured_bench(bench, [1268.0, 792.0], egui::Theme::Light).snapshot("capture_plate");
+}
+
 /// The window's own software renderer, so that pictures need no graphics driver and are the same on every machine.
 #[derive(Default)]
 struct Software(ui::software_renderer::SoftwareRenderer);
@@ -537,12 +646,16 @@ impl egui_kittest::TestRenderer for Software {
 }
 
 fn pictured(view: CellView, size: [f32; 2], theme: egui::Theme) -> Harness<'static, Bench> {
+    pictured_bench(Bench::new(view), size, theme)
+}
+
+fn pictured_bench(bench: Bench, size: [f32; 2], theme: egui::Theme) -> Harness<'static, Bench> {
     let mut harness = Harness::builder()
         .with_size(size)
         .renderer(Software::default())
         .with_theme(theme)
         .with_context_setup(ui::theme::install)
-        .build_ui_state(Bench::ui, Bench::new(view));
+        .build_ui_state(Bench::ui, bench);
     harness.run_steps(6);
     harness
 }
@@ -588,7 +701,7 @@ fn view(window: &Window) -> &CellView {
 
 fn is_connected(window: &Window) -> bool {
     let cell = view(window);
-    cell.robot.state == LinkState::Ready && cell.live.as_ref().is_some_and(|live| live.arc.is_ok())
+    cell.robot.state == LinkState::Ready && cell.live.as_ref().is_some_and(|live| live.found.is_ok())
 }
 
 fn click(harness: &mut Harness<'static, Window>, name: &str) {

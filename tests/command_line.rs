@@ -218,3 +218,70 @@ fn a_simulated_session_is_solved_close_to_its_truth() {
         assert!(difference.abs() < 0.5, "axis {axis}: {difference} mm");
     }
 }
+
+#[test]
+fn what_is_printed_is_about_the_target_of_the_session() {
+    let (plate, tip) = ("sample_sessions/plate.json", "sample_sessions/tip.json");
+    for (args, held, missing) in [
+        (
+            &["solve", plate, "--paper-tables"][..],
+            &["edge point in sensor", "\np1 ", "corner of the plate in base ("][..],
+            "ball",
+        ),
+        (&["solve", tip, "--paper-tables"], &["tip in sensor", "scatter of the tip in base", "\n12 "], "ball"),
+        (&["solve", plate, "--json"], &["plate-bundle"], "by_radius"),
+        (&["solve", tip, "--json"], &["fixed-point"], "by_radius"),
+        (&["solve", "sample_sessions/clean-sweeps.json", "--json", "--no-diagnosis"], &["by_radius"], "edge point"),
+        (&["solve", plate, "--no-diagnosis"], &[" mm, 0.28°"], "0.2761"),
+        (
+            &["solve", "sample_sessions/three-targets.json", "--no-diagnosis"],
+            &["not used here: the further targets plate, point; `handeye verify` judges this result on them"],
+            "-0.000",
+        ),
+        (&["solve", plate, "--no-diagnosis"], &["corner of the plate in base"], "not used here"),
+    ] {
+        let output = handeye(args);
+        assert_eq!(output.status.code(), Some(0), "{args:?}");
+        let text = stdout(&output);
+        for fragment in held {
+            assert!(text.contains(fragment), "{args:?}: {fragment:?} is not in\n{text}");
+        }
+        assert!(!text.contains(missing), "{args:?}: {missing:?} is in\n{text}");
+    }
+    let wrong = handeye(&["solve", plate, "--method", "ball-bundle"]);
+    let said = stdout(&wrong) + &String::from_utf8(wrong.stderr).expect("UTF-8");
+    assert_eq!(said.matches("Take a method").count(), 1, "{said}");
+    assert!(said.ends_with(
+        "nothing could be computed: ball-bundle is not for this target; plate-orthogonal, plate-bundle are\n"
+    ));
+}
+
+#[test]
+fn check_judges_by_the_method_that_gives_the_answer_and_names_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let sample = |name: &str| -> Value {
+        serde_json::from_slice(&std::fs::read(format!("sample_sessions/{name}.json")).expect("a sample")).expect("JSON")
+    };
+    let checked = |session: &Value| {
+        let path = folder.path().join("session.json");
+        std::fs::write(&path, session.to_string()).expect("written");
+        let path = path.to_str().expect("UTF-8");
+        let solved = handeye(&["solve", path, "--no-diagnosis"]);
+        (stdout(&handeye(&["check", path])), stdout(&solved))
+    };
+    let mut swapped = sample("plate");
+    swapped["stations"][3]["edge"] = "q".into();
+    let (said, solved) = checked(&swapped);
+    let line = said.lines().find(|line| line.starts_with("station-stands-out: ")).expect("it stands out");
+    let sentence = line.strip_prefix("station-stands-out: ").and_then(|line| line.strip_suffix(" (plate-bundle)"));
+    let answer = solved.split("(plate-bundle)\n").last().expect("the answer's section");
+    assert!(answer.contains(sentence.expect("the method is named")), "{said}\n{solved}");
+    let mut far = sample("tip");
+    for (touched_mm, is_far) in [([1.0, 2.0, 3.0], true), ([452.0, -118.0, 97.0], true), ([452.1, -118.1, 96.0], false)]
+    {
+        far["target"]["touched_in_base_mm"] = touched_mm.to_vec().into();
+        let (said, _) = checked(&far);
+        assert_eq!(said.contains("touched-point-off: The touched point lies "), is_far, "{said}");
+        assert_eq!(said.contains("nothing odd found"), !is_far, "{said}");
+    }
+}

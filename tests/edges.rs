@@ -8,8 +8,8 @@
 )]
 
 use handeye::fit::{EdgeOptions, EdgeRefusal, Feature, PointClass, extract_edge};
-use handeye::geometry::Profile;
-use handeye::scene::Random;
+use handeye::geometry::{Profile, Rigid, Vec3, so3};
+use handeye::scene::{Dirt as SceneDirt, Line, Part, PartKind, Random};
 
 const SEEDS: u64 = 300;
 const PITCH_MM: f64 = 0.05;
@@ -233,6 +233,46 @@ fn a_tip_is_found_within_what_is_said_of_it() {
     }
 }
 
+/// A pin that tilts by up to 20° about each axis, so that one of its sides may hardly be seen: found at coarse pitches as well,
+/// refused where it cannot be told, and never a shoulder of it taken for its point.
+#[test]
+fn a_pin_is_found_at_coarse_pitches_or_refused() {
+    // A flank of 2 mm has ten points at 0.2 mm, and fewer where it tilts away.
+    for (num_points, least_part, dirt) in [
+        (800, 0.98, SceneDirt::default()),
+        (200, 0.9, SceneDirt::default()),
+        (160, 0.85, SceneDirt::default()),
+        (800, 0.85, SceneDirt::all()),
+        (200, 0.8, SceneDirt::all()),
+    ] {
+        let [mut poses, mut noise, mut strays] = [1, 2, 3].map(|stream| Random::new(11, stream));
+        let pin = Part::new(PartKind::Pin, Rigid::identity());
+        let line = Line { num_points, width_mm: 40.0, profile_std_mm: NOISE_MM, dirt, decimals: None };
+        let (mut num_found, mut chi_squared, mut largest_mm) = (0, 0.0, 0.0_f64);
+        for _ in 0..SEEDS {
+            let tilt = Vec3::new(poses.signed_unit(), poses.signed_unit(), poses.signed_unit()) * 0.35;
+            let rotation = so3::exp(tilt) * so3::exp(Vec3::x() * std::f64::consts::PI);
+            let point = Vec3::new(6.0 * poses.signed_unit(), 0.0, 80.0 + 10.0 * poses.signed_unit());
+            let world_from_sensor = Rigid::from_parts((-(rotation * point)).into(), rotation);
+            let profile = line.profile(&mut noise, &mut strays, |x| pin.seen_z_mm(x, 1.0, &world_from_sensor));
+            let Ok(found) = extract_edge(&profile, &EdgeOptions { feature: Some(Feature::Tip), ..ANY }) else {
+                continue;
+            };
+            let error = nalgebra::Vector2::new(found.point_mm[0] - point.x, found.point_mm[1] - point.z);
+            let weight = found.covariance.try_inverse().expect("a covariance of full rank");
+            num_found += 1;
+            chi_squared += (error.transpose() * weight * error)[0] / 2.0;
+            largest_mm = largest_mm.max(error.norm());
+        }
+        let found_part = f64::from(num_found) / SEEDS as f64;
+        assert!(found_part >= least_part, "{num_points} points: {found_part} found");
+        let chi_squared = chi_squared / f64::from(num_found);
+        assert!((0.4..1.6).contains(&chi_squared), "{num_points} points: χ² {chi_squared}");
+        // A shoulder is 3 mm from the point.
+        assert!(largest_mm < 0.5, "{num_points} points: {largest_mm} mm");
+    }
+}
+
 /// What a profile without noise gives.
 fn extract(
     range_mm: impl Fn(f64) -> Option<f64>,
@@ -309,6 +349,22 @@ fn every_point_has_its_class() {
     assert_eq!(found.flanks.len(), 1);
     // The end next to the edge comes first.
     assert!((found.flanks[0].ends_mm[0][0] - 3.0).abs() < 2.0 * PITCH_MM, "{:?}", found.flanks[0]);
+}
+
+/// What is missing behind an edge is told, as far as more is missing than points drop out.
+#[test]
+fn a_gap_behind_a_step_is_measured() {
+    for (from_mm, to_mm) in [(3.0, 4.0), (1.0, 3.5)] {
+        let step = |x: f64| on_plate(x, -100.0, 3.0, Some(5.0)).filter(|_| !(from_mm..to_mm).contains(&x));
+        let found = extract(step, None).expect("a step");
+        let behind_mm = found.point_mm[0] + found.gap_mm[0];
+        assert!((behind_mm - to_mm).abs() < 1.5 * PITCH_MM, "{:?} {:?}", found.point_mm, found.gap_mm);
+        assert!(found.gap_mm[1].abs() < 0.02, "{:?}", found.gap_mm);
+    }
+    let closed = extract(|x| on_plate(x, -100.0, 3.0, Some(5.0)), None).expect("a step");
+    assert_eq!(closed.gap_mm, [0.0; 2]);
+    let free = extract(|x| on_plate(x, -100.0, 3.0, None), None).expect("an edge");
+    assert_eq!(free.gap_mm, [0.0; 2]);
 }
 
 #[test]

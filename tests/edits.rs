@@ -496,6 +496,19 @@ fn further_targets_are_added_named_used_and_removed() {
 }
 
 #[test]
+fn another_session_gives_all_of_its_targets() {
+    let other = Edit::Several(vec![tip("teeth", 1), tip("tip", 2)]).apply(&session(&[1, 1])).expect("fits");
+    let here = tip("tip", 1).apply(&session(&[1])).expect("fits");
+    let edit = handeye::app::verification::adding_targets_of(other.clone(), "part");
+    assert_eq!(handeye::text::edits::edit_label(&edit, &here), "add 3 targets");
+    let all = edit.apply(&here).expect("fits");
+    let sizes: Vec<(&str, usize)> =
+        all.further.iter().map(|further| (further.name.as_str(), further.stations.len())).collect();
+    assert_eq!(sizes, [("tip", 1), ("part", 2), ("teeth", 1), ("tip (2)", 2)]);
+    assert_eq!(all.further[2].known, other.further[0].known);
+}
+
+#[test]
 fn what_is_known_of_a_target_goes_with_its_kind() {
     let known = Known { pitch_mm: Some(15.0), ..Known::default() };
     let to = |target| Edit::Setup(SetupField::Target(target));

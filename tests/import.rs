@@ -581,6 +581,43 @@ mod command {
     }
 
     #[test]
+    fn plates_and_tips_go_out_and_come_back_and_a_column_edge_is_never_lost() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = |name: &str| text(&folder.path().join(name));
+        let (poses, profiles, out) = (path("poses.csv"), path("profiles"), path("again.json"));
+        for (sample, as_what) in [
+            ("sample_sessions/plate.json", &[][..]),
+            ("sample_sessions/plate.json", &["--target", "plate"]),
+            ("sample_sessions/tip.json", &["--target", "point"]),
+        ] {
+            check(&["export", sample, "--poses", &poses, "--profiles", &profiles, "--force"], 0, &["poses"]);
+            let import = ["import", &poses, &profiles, "--out", &out, "--force"];
+            check(&[&import[..], as_what].concat(), 0, &["stations"]);
+            let load = |path: &str| handeye::session::load(Path::new(path)).expect("a session");
+            let (found, expected) = (load(&out), load(sample));
+            assert_eq!(found.target, expected.target, "{sample} {as_what:?}");
+            for (found, expected) in found.stations.iter().zip(&expected.stations) {
+                assert_eq!((found.edge, &found.label), (expected.edge, &expected.label));
+                assert_eq!(found.captures[0].reading, expected.captures[0].reading);
+            }
+            assert_eq!(found.stations.len(), expected.stations.len());
+        }
+        check(&["export", "sample_sessions/plate.json", "--poses", &poses, "--force"], 0, &["18 poses"]);
+        let import = ["import", &poses, "--out", &out, "--force"];
+        let meant = "did you mean --target plate?";
+        for wrong in [&["--radius-mm", "15"][..], &["--target", "point"], &["--target", "workpiece"]] {
+            check(&[&import[..], wrong].concat(), 2, &["found a column edge", meant]);
+        }
+        check(
+            &[&import[..], &["--target", "plate", "--radius-mm", "15"]].concat(),
+            2,
+            &["--radius-mm: found a radius"],
+        );
+        let tip = "sample_sessions/tip.json";
+        check(&[&import[..], &["--append-to", tip]].concat(), 2, &["found 18 stations with an edge of a plate"]);
+    }
+
+    #[test]
     fn a_plate_without_edges_says_what_is_missing() {
         let folder = tempfile::tempdir().expect("a folder");
         let (poses, out) = (text(&folder.path().join("poses.csv")), text(&folder.path().join("plate.json")));

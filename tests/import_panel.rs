@@ -209,6 +209,28 @@ fn stations_can_be_added_only_where_a_session_is_open() {
 }
 
 #[test]
+fn a_column_edge_makes_a_plate_and_goes_to_no_other_target() {
+    const PLATE: &str = "label,edge,x,y,z,w,p,r,px,py,pz\n\
+        a,p,562.4,-110.2,-139.4,170.5,10.2,-40.1,1,0,80\n\
+        b,q,555.8,-129.2,154.9,160.0,-12.5,-35.3,2,0,81\n";
+    let mut harness = Bench::with(PLATE).harness();
+    click(&mut harness, words::NEW_SESSION);
+    let into = ImportInto::NewSession { name: "Pasted poses".to_owned(), target: Target::RightAnglePlate };
+    assert_eq!(harness.state().commands, [Command::FinishImport(into)]);
+    let mut harness = Bench::with(PLATE).harness();
+    click(&mut harness, words::TARGET_FIELD);
+    pick(&mut harness, words::POINT);
+    click(&mut harness, words::NEW_SESSION);
+    assert!(harness.state().commands.is_empty(), "the edges would be lost");
+    let mut bench = Bench::with(PLATE);
+    let sample = session::parse(samples::ALL[0].json.as_bytes(), "sample").expect("valid");
+    bench.workbench.open_session(sample, None);
+    let mut harness = bench.harness();
+    click(&mut harness, words::ADD);
+    assert!(harness.state().commands.is_empty(), "the open session is about a ball");
+}
+
+#[test]
 fn escape_closes_a_list_first_and_then_the_preview() {
     let mut harness = Bench::with(TABLE).harness();
     click(&mut harness, &words::setting(words::ORIENTATION));

@@ -3,6 +3,8 @@
 
 mod plate_cell;
 
+use std::sync::Arc;
+
 use handeye::calibrate::plate::{nine_elements, solve};
 use handeye::calibrate::validation::validate;
 use handeye::calibrate::verdict::judge;
@@ -10,11 +12,14 @@ use handeye::calibrate::{
     Edge, Method, Mount, PlateProblem, Problem, Reading, Solution, SolveError, Verdict, Warning, solve_joint,
 };
 use handeye::diagnose::{Fault, Remedy, Severity, diagnose_any};
+use handeye::fit::{EdgeFit, Feature};
 use handeye::geometry::so3::exp;
 use handeye::geometry::{Rigid, Transform, Vec3, stats};
+use handeye::scene::Random;
 use handeye::session::{self, Session, Target};
 use handeye::watch::Unwatched;
-use plate_cell::{Cell, error, simulated, simulated_tip, simulated_tip_with, simulated_with};
+use nalgebra::Matrix2;
+use plate_cell::{Cell, bound_mm2, error, simulated, simulated_tip, simulated_tip_with, simulated_with};
 
 /// What double precision leaves of 600 mm after a solve.
 const EXACT_MM: f64 = 1e-6;
@@ -84,34 +89,52 @@ fn nine_elements_need_the_right_angle_between_columns() {
     }
 }
 
-/// From a rough mounting 10° and 20 mm off, every one of a thousand comes out; and the bundle is better.
+/// From a rough mounting 10° and 20 mm off, every one of a thousand comes out; and the bundle is better, whether the line
+/// crosses the edges squarely or slantwise.
+///
+/// At 45° the published method is less than 1.55 times as far off as any unbiased one has to be (the bench prints the bound), so
+/// the bundle can hardly be better there than the limit; it is at the bound.
 #[test]
 fn a_thousand_trials_from_a_rough_mounting() {
     /// A hundred times what the noise makes of it: another minimum, and nothing else, is so far off.
     const GROSS_MM: f64 = 30.0;
-    let cell = Cell::default();
-    let medians_mm = Method::PLATE.map(|method| {
-        let mut errors_mm: Vec<f64> = (1..=1000)
-            .map(|seed| {
-                let simulated = simulated(&cell, seed);
+    /// A thousand errors know their RMS to two or three per cent.
+    const AT_THE_BOUND: f64 = 1.05;
+    for line_to_edge_deg in [90.0, 45.0] {
+        let cell = Cell { line_to_edge_deg, ..Cell::default() };
+        let problems: Vec<_> = (1..=1000).map(|seed| simulated(&cell, seed)).collect();
+        let [mut published_mm, mut bundle_mm] = Method::PLATE.map(|method| {
+            let error_of = |(seed, simulated): (usize, &plate_cell::Simulated)| {
                 let solution = solve(&simulated.problem, method).expect("a solution");
                 let (error_mm, error_deg) = error(&solution.flange_from_sensor, &simulated.flange_from_sensor);
                 assert!(error_mm < GROSS_MM && error_deg < 5.0, "{method:?} {seed}: {error_mm} mm, {error_deg}°");
                 error_mm
-            })
-            .collect();
-        stats::median(&mut errors_mm)
-    });
-    let ratio = medians_mm[1] / medians_mm[0];
-    assert!(ratio <= 0.65, "bundle over published: {ratio}");
+            };
+            problems.iter().enumerate().map(error_of).collect::<Vec<f64>>()
+        });
+        let bound_mm = stats::rms(problems.iter().map(|simulated| bound_mm2(&cell, simulated).trace().sqrt()));
+        let over_bound = stats::rms(bundle_mm.iter().copied()) / bound_mm;
+        assert!(over_bound < AT_THE_BOUND, "line at {line_to_edge_deg}°: bundle over the bound {over_bound}");
+        let ratio = stats::median(&mut bundle_mm) / stats::median(&mut published_mm);
+        assert!(ratio <= 0.65, "line at {line_to_edge_deg}°: bundle over published {ratio}");
+    }
 }
 
-/// Stated or estimated: errors are as large as the σ promises.
+/// Stated or estimated: errors are as large as the σ promises. An estimated one carries the doubt in its noise, which few
+/// equations tell, and more so where a method's errors are not those that the scatter shows best: the published one's.
 #[test]
 fn errors_are_as_large_as_sigma_says() {
-    for cell in
-        [Cell { is_stated: true, ..noisy() }, noisy(), Cell { line_to_edge_deg: 45.0, is_stated: true, ..noisy() }]
-    {
+    let slantwise = Cell { line_to_edge_deg: 45.0, ..noisy() };
+    // A robot that errs in its orientations above all.
+    let turning = Cell { point_std_mm: 0.01, position_std_mm: 0.005, orientation_std_deg: 0.02, ..slantwise };
+    for cell in [
+        Cell { is_stated: true, ..noisy() },
+        noisy(),
+        Cell { is_stated: true, ..slantwise },
+        slantwise,
+        Cell { line_to_edge_deg: 45.0, ..Cell::default() },
+        turning,
+    ] {
         for method in Method::PLATE {
             let squares: Vec<[f64; 2]> = (1..=200)
                 .map(|seed| {
@@ -124,9 +147,68 @@ fn errors_are_as_large_as_sigma_says() {
                 .collect();
             let [errors, stated] = [0, 1].map(|idx| squares.iter().map(|pair| pair[idx]).sum::<f64>());
             let ratio = (errors / stated).sqrt();
-            assert!((0.9..1.1).contains(&ratio), "{method:?}, stated {}: {ratio}", cell.is_stated);
+            let least = if cell.is_stated { 0.9 } else { 0.8 };
+            assert!((least..1.1).contains(&ratio), "{method:?}, {cell:?}: {ratio}");
         }
     }
+}
+
+/// A station's point as an edge fit would give it, with what is missing behind the edge.
+fn edge_reading(point: Vec3, std_mm: f64, gap_mm: [f64; 2]) -> Reading {
+    Reading::Edge(Arc::new(EdgeFit {
+        feature: Feature::Step,
+        point_mm: [point.x, point.z],
+        covariance: Matrix2::identity() * std_mm.powi(2),
+        gap_mm,
+        flanks: Vec::new(),
+        point_std_mm: std_mm,
+        classes: Vec::new(),
+    }))
+}
+
+/// A hole in one profile that hides the edge leaves it anywhere in the hole; where all profiles have such a gap it is the
+/// shadow behind the edge.
+#[test]
+fn a_hole_over_an_edge_is_told_from_a_shadow() {
+    const GAP_MM: f64 = 2.0;
+    let cell = Cell { line_to_edge_deg: 45.0, ..noisy() };
+    let (mut with_hole, mut taken_for_end, mut in_shadow, mut clean) = ([0.0; 2], 0.0, 0.0, 0.0);
+    for seed in 1..=60 {
+        let simulated = simulated(&cell, seed);
+        let solved = |reading_of: &dyn Fn(usize, Vec3) -> Reading| {
+            let mut problem = simulated.problem.clone();
+            for (idx, station) in problem.stations.iter_mut().enumerate() {
+                let reading = &mut station.station.captures[0].reading;
+                *reading = reading_of(idx, reading.point_in_sensor_mm().expect("a point"));
+            }
+            let solution = solve(&problem, Method::PlateBundle).expect("a solution");
+            let known = solution.uncertainty.as_ref().expect("something is left over").workspace_point_std_mm;
+            (point_error_mm(&solution, &simulated.flange_from_sensor).powi(2), known.powi(2))
+        };
+        let behind = |part: f64| [GAP_MM * part, 0.0];
+        let edge_in_hole = f64::from(u32::try_from(seed % 10).expect("small")) / 10.0 + 0.05;
+        let shift = Vec3::x() * (GAP_MM * edge_in_hole);
+        let is_hidden = |idx: usize| idx == 4;
+        let of_hole = |idx, point: Vec3| match is_hidden(idx) {
+            true => edge_reading(point - shift, 0.03, behind(1.0)),
+            false => edge_reading(point, 0.03, [0.0; 2]),
+        };
+        let (error, variance) = solved(&of_hole);
+        with_hole = [with_hole[0] + error, with_hole[1] + variance];
+        taken_for_end += solved(&|idx, point| {
+            let shift = if is_hidden(idx) { shift } else { Vec3::zeros() };
+            edge_reading(point - shift, 0.03, [0.0; 2])
+        })
+        .0;
+        in_shadow += solved(&|idx, point| edge_reading(point, 0.03, behind(if idx % 2 == 0 { 1.0 } else { 0.7 }))).0;
+        clean += solved(&|_, point| edge_reading(point, 0.03, [0.0; 2])).0;
+    }
+    assert!(in_shadow == clean, "a shadow moved points: {in_shadow} against {clean}");
+    // One of eighteen points is lost, no more.
+    assert!(with_hole[0] < 1.5 * clean, "{with_hole:?} against {clean}");
+    assert!(taken_for_end > 2.0 * with_hole[0], "{taken_for_end} against {with_hole:?}");
+    let honest = (with_hole[0] / with_hole[1]).sqrt();
+    assert!((0.75..1.2).contains(&honest), "error over σ: {honest}");
 }
 
 #[test]
@@ -193,6 +275,168 @@ fn too_little_is_never_good() {
         }
         assert!(matches!(solve(&still, method), Err(SolveError::NoRotation { .. })));
         assert!(matches!(solve(&one_axis, method), Err(SolveError::RotationsAboutOneAxis { .. })));
+    }
+}
+
+/// The same for data that no cell delivers: nothing of it panics, and nothing is called good.
+#[test]
+fn spoilt_data_are_never_good() {
+    let cell = Cell { is_stated: true, point_std_mm: 0.001, spread_deg: 30.0, ..Cell::default() };
+    let plate = simulated(&cell, 1).problem;
+    let (tip, _) = simulated_tip(&Cell { num_points: [18, 0], ..cell }, 1);
+    type Spoil = fn(usize, &mut handeye::calibrate::Capture);
+    let spoils: [(&str, Spoil); 9] = [
+        ("one point is not a number", |idx, capture| {
+            if idx == 3 {
+                capture.reading = Reading::Point(Vec3::new(f64::NAN, 0.0, 170.0));
+            }
+        }),
+        ("one point is infinite", |idx, capture| {
+            if idx == 3 {
+                capture.reading = Reading::Point(Vec3::new(0.0, 0.0, f64::INFINITY));
+            }
+        }),
+        ("one point is huge", |idx, capture| {
+            if idx == 3 {
+                capture.reading = Reading::Point(Vec3::new(1e300, 0.0, 170.0));
+            }
+        }),
+        ("all points are huge", |idx, capture| {
+            let sign = if idx % 2 == 0 { 1.0 } else { -1.0 };
+            capture.reading = Reading::Point(Vec3::new(sign * 1e200, 0.0, 1e200));
+        }),
+        ("a pose is huge", |idx, capture| {
+            if idx == 3 {
+                capture.base_from_flange =
+                    Transform::from_parts(Vec3::x() * 1e300, capture.base_from_flange.rotation());
+            }
+        }),
+        ("a pose is not a number", |idx, capture| {
+            if idx == 3 {
+                capture.base_from_flange =
+                    Transform::from_parts(Vec3::x() * f64::NAN, capture.base_from_flange.rotation());
+            }
+        }),
+        ("all points are the same", |_, capture| capture.reading = Reading::Point(Vec3::new(1.0, 0.0, 170.0))),
+        ("all poses are the same", |_, capture| {
+            capture.base_from_flange = Transform::from_parts(Vec3::new(600.0, 0.0, 300.0), exp(Vec3::x() * 3.0));
+        }),
+        ("all poses stand at one place", |_, capture| {
+            capture.base_from_flange =
+                Transform::from_parts(Vec3::new(600.0, 0.0, 300.0), capture.base_from_flange.rotation());
+        }),
+    ];
+    for (name, spoil) in spoils {
+        let mut plate = plate.clone();
+        let mut tip = tip.clone();
+        let of_plate = plate.stations.iter_mut().map(|station| &mut station.station);
+        for (idx, station) in of_plate.enumerate().chain(tip.stations.iter_mut().enumerate()) {
+            spoil(idx, &mut station.captures[0]);
+        }
+        for problem in [Problem::Plate(plate), Problem::Point(tip)] {
+            for method in problem.methods() {
+                if let Ok(solution) = problem.solve(*method) {
+                    assert_ne!(judge(&solution).0, Verdict::Good, "{method:?}: {name}: {:?}", solution.warnings);
+                    let numbers = solution.flange_from_sensor.translation_mm();
+                    assert!(numbers.iter().all(|value| value.is_finite()), "{method:?}: {name}");
+                    // Nothing that only looks solved.
+                    let _ = validate(&solution);
+                }
+            }
+            if let Ok(joint) = solve_joint(std::slice::from_ref(&problem)) {
+                assert!(joint.uncertainty.workspace_point_std_mm.is_finite(), "{name}");
+            }
+        }
+    }
+}
+
+/// Fewer stations than they seem: duplicates add nothing.
+#[test]
+fn duplicates_are_no_further_stations() {
+    let cell = Cell { num_points: [4, 4], ..noisy() };
+    for seed in 1..=10 {
+        let plate = simulated(&cell, seed).problem;
+        let (tip, _) = simulated_tip(&Cell { num_points: [5, 0], ..cell }, seed);
+        let mut plate_thrice = plate.clone();
+        plate_thrice.stations = (0..3).flat_map(|_| plate.stations.clone()).collect();
+        let mut tip_thrice = tip.clone();
+        tip_thrice.stations = (0..3).flat_map(|_| tip.stations.clone()).collect();
+        for (once, thrice) in
+            [(Problem::Plate(plate), Problem::Plate(plate_thrice)), (Problem::Point(tip), Problem::Point(tip_thrice))]
+        {
+            for method in once.methods() {
+                let [alone, repeated] = [&once, &thrice].map(|problem| problem.solve(*method).expect("a solution"));
+                let std = |solution: &Solution| {
+                    solution.uncertainty.as_ref().expect("something is left over").workspace_point_std_mm
+                };
+                let ratio = std(&repeated) / std(&alone);
+                // Rounding, and passes that settle from another start.
+                assert!((ratio - 1.0).abs() < 1e-3, "{method:?}, {seed}: σ changes by {ratio}");
+            }
+        }
+    }
+}
+
+/// All points of an edge at one place show no direction of it, but the right angle does: what is said of the result holds.
+#[test]
+fn points_of_an_edge_at_one_place_are_judged_by_what_they_tell() {
+    let cell = Cell { is_stated: true, spread_deg: 30.0, ..Cell::default() };
+    for seed in 1..=5 {
+        let mut problem = simulated(&cell, seed).problem;
+        let truth = simulated(&cell, seed);
+        let place = problem
+            .stations
+            .iter()
+            .find(|station| station.edge == Edge::P)
+            .map(|station| {
+                let capture = &station.station.captures[0];
+                let point = capture.reading.point_in_sensor_mm().expect("a point");
+                (*capture.base_from_flange.rigid() * truth.flange_from_sensor).transform_point(&point.into()).coords
+            })
+            .expect("a point on p");
+        for station in problem.stations.iter_mut().filter(|station| station.edge == Edge::P) {
+            let capture = &mut station.station.captures[0];
+            let point = capture.reading.point_in_sensor_mm().expect("a point");
+            let pose = *capture.base_from_flange.rigid();
+            let now = (pose * truth.flange_from_sensor).transform_point(&point.into()).coords;
+            capture.base_from_flange = Transform::from_parts(pose.translation.vector + place - now, pose.rotation);
+        }
+        for method in Method::PLATE {
+            if let Ok(solution) = solve(&problem, method) {
+                let known = solution.uncertainty.as_ref().expect("something is left over");
+                let off_in_stds = point_error_mm(&solution, &truth.flange_from_sensor) / known.workspace_point_std_mm;
+                assert!(off_in_stds < 3.0, "{method:?}, {seed}: {off_in_stds} σ off, {known:?}");
+            }
+        }
+    }
+}
+
+/// Readings at one pose share its error: many of them are no more than one at many poses, and copies no more than one.
+#[test]
+fn repeated_readings_are_weighed_as_what_they_are() {
+    for (is_copy, num_captures) in [(true, 5), (false, 1), (false, 5)] {
+        let mut squares = [0.0; 2];
+        for seed in 1..=100 {
+            let mut simulated = simulated(&noisy(), seed);
+            let mut random = Random::new(seed, 9);
+            for station in &mut simulated.problem.stations {
+                let first = station.station.captures[0].clone();
+                let point = first.reading.point_in_sensor_mm().expect("a point");
+                station.station.captures.extend((1..num_captures).map(|_| {
+                    let noise = if is_copy { Vec3::zeros() } else { random.normal3() * 0.042 };
+                    let reading = Reading::Point(point + Vec3::new(noise.x, 0.0, noise.z));
+                    handeye::calibrate::Capture { reading, ..first.clone() }
+                }));
+            }
+            let solution = solve(&simulated.problem, Method::PlateBundle).expect("a solution");
+            assert_eq!(solution.plate.as_ref().expect("a plate").points.len(), 18 * num_captures);
+            let known = solution.uncertainty.as_ref().expect("something is left over");
+            squares[0] += point_error_mm(&solution, &simulated.flange_from_sensor).powi(2);
+            squares[1] += known.workspace_point_std_mm.powi(2);
+        }
+        let ratio = (squares[0] / squares[1]).sqrt();
+        // A hundred seeds know it to a tenth; σ carries the doubt in an estimated noise.
+        assert!((0.75..1.15).contains(&ratio), "copies {is_copy}, {num_captures}: error over σ {ratio}");
     }
 }
 

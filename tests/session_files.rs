@@ -48,6 +48,13 @@ const BROKEN_TARGETS: &[(&str, &str, &[&str])] = &[
     ("\"kind\": \"right-angle-plate\"", "\"kind\": \"rgbd\"", &["further[0].target.kind: found \"rgbd\", expected \"ball\", \"right-angle-plate\", \"point\" or \"workpiece\""]),
     ("\"kind\": \"right-angle-plate\"", "\"kind\": \"ball\"", &["further[0].target.radius_mm: found nothing"]),
     ("\"edge\": \"p\", ", "", &["further[0].stations[0].edge: found nothing, expected \"p\" or \"q\""]),
+    ("\"edge\": \"p\"", "\"edge\": \"P\"", &["further[0].stations[0].edge: found \"P\", expected \"p\" or \"q\""]),
+    ("\"edge\": \"q\"", "\"edge\": \"q \"", &["further[0].stations[1].edge: found \"q \", expected \"p\" or \"q\""]),
+    ("\"euler_deg\": [0, 90, 0], \"convention\": \"kuka-abc\"", "\"quaternion_wxyz\": [0.5, 0.1, 0, 0]", &["sensor.rough_flange_from_sensor.quaternion_wxyz: found a quaternion of norm 0.509902, expected norm 1"]),
+    ("\"pitch_mm\": 15", "\"pitch_mm\": NaN", &["line 18, column", "found NaN, expected a finite number"]),
+    ("\"height_mm\": 10", "\"height_mm\": 1e9", &["further[1].target.height_mm: found 1000000000, expected a part's size in mm"]),
+    ("\"diameter_mm\": 40", "\"diameter_mm\": \"40\"", &["further[1].target.diameter_mm: found \"40\""]),
+    ("\"stations\": [], \"their 4\"", "\"their 4\"", &["further[1].stations: found nothing, expected a list of stations"]),
     ("\"label\": \"q1\"", "\"label\": \"p1\"", &["further[0].stations[1].label: found \"p1\", which further[0].stations[0] has too"]),
     ("\"point_mm\": [1, 0, 80]", "\"point_mm\": [1, 0]", &["further[0].stations[0].captures[0].point_mm: found a list of 2"]),
     ("\"pitch_mm\": 15", "\"pitch_mm\": -15", &["further[1].target.pitch_mm: found -15, expected a part's size in mm"]),
@@ -87,9 +94,9 @@ const BROKEN: &[(&str, &str, &[&str])] = &[
     ("\"radius_mm\": 15.0", "\"radius_mm\": -15", &["target.radius_mm: found -15, expected a ball's radius in mm from 0.001 to 10000"]),
     ("\"radius_mm\": 15.0", "\"radius_mm\": 0", &["target.radius_mm: found 0"]),
     ("\"radius_mm\": 15.0", "\"radius_mm\": 1e300", &["target.radius_mm: found 1e+300"]),
-    ("\"radius_mm\": 15.0", "\"radius_mm\": 1e999", &["line 11, column", "number out of range"]),
-    ("\"radius_mm\": 15.0", "\"radius_mm\": NaN", &["line 11, column", "found `NaN"]),
-    ("\"radius_mm\": 15.0", "\"radius_mm\": Infinity", &["line 11, column", "found `Infinity"]),
+    ("\"radius_mm\": 15.0", "\"radius_mm\": 1e999", &["line 11, column", "found 1e999, expected a finite number"]),
+    ("\"radius_mm\": 15.0", "\"radius_mm\": NaN", &["line 11, column", "found NaN, expected a finite number"]),
+    ("\"radius_mm\": 15.0", "\"radius_mm\": Infinity", &["line 11, column", "found Infinity, expected a finite number"]),
     ("\"radius_mm\": 15.0", "\"radius_mm\": null", &["target.radius_mm: found nothing, expected a ball's radius"]),
     ("\"kind\": \"ball\"", "\"kind\": \"cube\"", &["target.kind: found \"cube\"", "\"ball\", \"right-angle-plate\", \"point\", \"workpiece\" or \"rgbd\""]),
     ("\"kind\": \"ball\", ", "", &["target.kind: found nothing"]),
@@ -213,11 +220,29 @@ fn files_that_are_no_session_at_all_are_refused() {
     check_refused("[]", &["top level: found an empty list, expected a session"]);
     check_refused("null", &["top level: found null"]);
     check_refused("{\"format\": \"handeye-session\"", &["line 1, column 28: found the end of the file"]);
-    check_refused(&VALID[..VALID.len() / 2], &["found the end of the file, expected JSON"]);
+    check_refused(
+        &VALID[..VALID.len() / 2],
+        &["found the end of the file", "the file was cut off", "take it from a copy"],
+    );
     check_refused(&format!("{VALID} x"), &["found `x`", "trailing characters"]);
     check_refused(&"[".repeat(100_000), &["recursion limit exceeded"]);
     check_refused(&format!("{{\"deep\": {}", "{\"a\":".repeat(10_000)), &["recursion limit exceeded"]);
-    check_refused("x,y,z\n1,2,3\n", &["line 1, column 1: found `x,y,z`"]);
+    check_refused(
+        "x,y,z\n1,2,3\n",
+        &["line 1, column 1: found `x,y,z`", "a number, text in quotes, a list or an object"],
+    );
+    for (written, shown) in [
+        ("NaN", "NaN"),
+        ("nan", "nan"),
+        ("-Infinity", "-Infinity"),
+        ("inf", "inf"),
+        ("1e999", "1e999"),
+        ("-2.5E400", "-2.5E400"),
+    ] {
+        let json = VALID.replacen("\"z_mm\": [0.25", &format!("\"z_mm\": [{written}"), 1);
+        assert!(json.contains(written), "the valid session has changed");
+        check_refused(&json, &[&format!("found {shown}, expected a finite number"), "write null in z_mm", "line "]);
+    }
 }
 
 #[test]

@@ -1,5 +1,4 @@
 //! The Verify step, driven by the names that screen readers see, in the whole window.
-#![expect(clippy::expect_used, reason = "helpers of tests may fail as tests do")]
 
 use std::time::{Duration, Instant};
 
@@ -51,10 +50,9 @@ fn window_on(session: Session) -> Harness<'static, Window> {
 }
 
 fn click(harness: &mut Harness<'static, Window>, name: &str) {
-    // The title of a card may say the same as the tab above it.
-    harness.get_all_by_label(name).next().expect("a control").scroll_to_me();
+    harness.get_by_label(name).scroll_to_me();
     harness.run_steps(3);
-    harness.get_all_by_label(name).next().expect("a control").click();
+    harness.get_by_label(name).click();
     settle(harness);
 }
 
@@ -64,8 +62,7 @@ fn apply(harness: &mut Harness<'static, Window>, command: Command) {
 }
 
 fn type_into(harness: &mut Harness<'static, Window>, name: &str, text: &str) {
-    // So may that above a field.
-    let field = harness.get_all_by_label(name).last().expect("a field");
+    let field = harness.get_by_label(name);
     field.focus();
     field.type_text(text);
     harness.run_steps(2);
@@ -144,7 +141,7 @@ fn a_pasted_matrix_is_checked_and_judged_along() {
     // Below what fits into the window: the field is found by its name all the same.
     type_into(
         &mut harness,
-        words::PASTED,
+        words::PASTED_FIELD,
         "0.998 -0.021 -0.056 -7.806 0.001 -9.441 -0.331 123.89 0.006 0.331 0.942 -79.4",
     );
     assert!(harness.query_by_label("Not a rotation").is_some());

@@ -5,11 +5,13 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use crate::calibrate::Edge;
 use crate::device::{
     LinkState, MotionLimits, MotionRefusal, ProfileReading, Readiness, RobotReport, RobotSetup, RoutineEnd,
     SearchReport, SearchSettings, SensorSetup, SettleSettings,
 };
 use crate::plan::PlannedStation;
+use crate::scene::PartKind;
 
 pub use crate::device::LiveProfile;
 
@@ -22,16 +24,19 @@ pub struct RoughMounting {
     pub quaternion_wxyz: [f64; 4],
 }
 
-/// What is measured at a station.
+/// What is measured at a station; of a plate it is always one profile.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum StationRoutine {
-    /// The search for the largest arc.
+    /// The search for a ball's largest arc, or for a tip.
     #[default]
     LargestArc,
     /// One profile.
     FixedPoint,
 }
+
+/// What can stand in the simulated cell to practise on, in the order in which it is offered; no part: a ball.
+pub const PRACTICE_PARTS: [Option<PartKind>; 3] = [None, Some(PartKind::Plate), Some(PartKind::Pin)];
 
 /// Everything that is set before motion; the window remembers it between runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -47,6 +52,8 @@ pub struct CellSettings {
     pub mounting: Option<RoughMounting>,
     /// What a run measures at each station.
     pub routine: StationRoutine,
+    /// The edge of a plate that the line is on.
+    pub edge: Edge,
     /// Whether a run asks before each station's motion.
     pub asks_before_motion: bool,
 }
@@ -62,18 +69,22 @@ pub enum CellCommand {
     DisconnectRobot,
     /// Lets the profiler go.
     DisconnectSensor,
-    /// Starts a simulated cell, connects to it, and begins a session for its ball.
-    Practise,
+    /// Starts a simulated cell, connects to it, and begins a session for what stands in it: a part, or a ball.
+    Practise(Option<PartKind>),
+    /// Lets the simulated arm bring the line onto an edge of its plate, as somebody with a pendant would; that edge is chosen.
+    JogToEdge(Edge),
     /// Ends the simulated cell.
     EndPractice,
     /// Allows motion, or forbids it; forbidding stops the robot.
     Arm(bool),
     /// Sets what is set before motion.
     SetSettings(Box<CellSettings>),
-    /// Measures a fixed-point station where the robot stands: one profile.
+    /// Measures a station of one profile where the robot stands.
     CaptureStation,
     /// Searches the largest arc from where the robot stands: a station.
     FindLargestArc,
+    /// Searches the tip from where the robot stands, and captures it: a station.
+    FindTip,
     /// Asks for the next station's pose; it is shown in [`CellView::proposal`] and nothing moves.
     ProposeStation,
     /// Goes to the proposed pose and measures there.
@@ -180,7 +191,7 @@ pub struct CellView {
     pub robot: LinkView<RobotSetup, RobotReport>,
     /// The profiler.
     pub sensor: LinkView<SensorSetup, ProfileReading>,
-    /// The newest profile with its arc.
+    /// The newest profile with what was found in it.
     pub live: Option<LiveProfile>,
     /// Whether the cell is the simulated one.
     pub is_practice: bool,

@@ -2,13 +2,30 @@
 
 use crate::calibrate::{MethodResult, Problem};
 use crate::session::model::UnknownFields;
-use crate::session::{FurtherTarget, Known, Measured, Session, Target, problem_of};
+use crate::session::{Edit, FurtherTarget, Known, Measured, Session, Target, problem_of};
 use crate::text::verify::{own_target_name, target_name_from_file};
 use crate::verify::{Calibration, TargetCase, Verification, verify};
 use crate::watch::{Cancelled, Watch};
 
-/// The targets of a session with what the methods make of each: its own first, then the further ones. A target that nothing
-/// is computed from, such as a workpiece, is none of them.
+/// The data of a target with what the methods made of them.
+#[derive(Clone, Debug)]
+pub struct SolvedTarget {
+    /// The data.
+    pub problem: Problem,
+    /// One entry a method.
+    pub results: Vec<MethodResult>,
+}
+
+/// What the methods made of the further targets of a verification: they stay what they are while only the session's own
+/// stations change.
+#[must_use]
+pub fn solved_further(verification: &Verification) -> Vec<SolvedTarget> {
+    let further = verification.targets.iter().filter(|target| target.further_idx.is_some());
+    further.map(|target| SolvedTarget { problem: target.problem.clone(), results: target.results.clone() }).collect()
+}
+
+/// The targets of a session with what the methods make of each: its own first, then the further ones, unless they are among
+/// the `known`. A target that nothing is computed from, such as a workpiece, is none of them.
 ///
 /// # Errors
 /// [`Cancelled`] if `watch` says so.
@@ -16,6 +33,7 @@ pub fn target_cases(
     session: &Session,
     measured: &Measured,
     own: Option<(&Problem, &[MethodResult])>,
+    known: &[SolvedTarget],
     watch: &mut dyn Watch,
 ) -> Result<Vec<TargetCase>, Cancelled> {
     let touched_mm = |target: &Target, known: &Known| match target {
@@ -34,7 +52,10 @@ pub fn target_cases(
         .collect();
     for (further_idx, further) in session.further.iter().enumerate() {
         let Ok(problem) = problem_of(session, measured, further_idx) else { continue };
-        let results = problem.solve_all(problem.methods(), watch)?;
+        let results = match known.iter().find(|known| known.problem == problem) {
+            Some(known) => known.results.clone(),
+            None => problem.solve_all(problem.methods(), watch)?,
+        };
         cases.push(TargetCase {
             name: further.name.clone(),
             further_idx: Some(further_idx),
@@ -46,7 +67,8 @@ pub fn target_cases(
     Ok(cases)
 }
 
-/// All calibrations at hand, those `given` among them, on all targets of a session.
+/// All calibrations at hand, those `given` among them, on all targets of a session. What the methods made of further targets
+/// is taken from `known` where it holds them.
 ///
 /// # Errors
 /// [`Cancelled`] if `watch` says so.
@@ -55,17 +77,19 @@ pub fn verification(
     measured: &Measured,
     own: Option<(&Problem, &[MethodResult])>,
     given: &[Calibration],
+    known: &[SolvedTarget],
     watch: &mut dyn Watch,
 ) -> Result<Verification, Cancelled> {
-    let cases = target_cases(session, measured, own, watch)?;
+    let cases = target_cases(session, measured, own, known, watch)?;
     verify(cases, given, watch)
 }
 
-/// A session's own target as a further one of another session. The name that it gets is free among those there once the edit
-/// is made.
+/// All that a session measured, its own target and its further ones, as further targets of another session. The names that
+/// they get are free among those there once the edit is made.
 #[must_use]
-pub fn as_further(session: Session, file_name: &str) -> FurtherTarget {
-    let Session { name, target, known, stations, .. } = session;
+pub fn adding_targets_of(session: Session, file_name: &str) -> Edit {
+    let Session { name, target, known, stations, further, .. } = session;
     let name = if name.trim().is_empty() { target_name_from_file(file_name) } else { name };
-    FurtherTarget { name, target, known, stations, unknown: UnknownFields::new() }
+    let own = FurtherTarget { name, target, known, stations, unknown: UnknownFields::new() };
+    Edit::Several(std::iter::once(own).chain(further).map(|target| Edit::AddFurther(Box::new(target))).collect())
 }

@@ -79,8 +79,9 @@ pub enum SolveError {
     },
     /// The readings leave a combination of the unknowns free.
     #[error(
-        "the stations leave at least one direction free (condition number {condition:.1e}): add stations that are tilted \
-         differently, and with the target elsewhere in the profile"
+        "the stations leave at least one direction free{}: add more stations, tilted differently and with the target \
+         elsewhere in the profile",
+        if condition.is_finite() { format!(" (condition number {condition:.1e})") } else { String::new() }
     )]
     Undetermined {
         /// Condition number of the scaled normal equations.
@@ -96,8 +97,9 @@ pub enum SolveError {
     },
     /// Two lines in space and a sensor on the flange need more.
     #[error(
-        "found {found_p} points on edge p and {found_q} on edge q; at least {needed} on each are needed, with different \
+        "found {found_p} point{} on edge p and {found_q} on edge q; at least {needed} on each are needed, with different \
          orientations{alone}{because}",
+        plural(*found_p),
         alone = one_edge_alone(*found_p, *found_q),
         because = because(refusal.as_ref())
     )]

@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::fit::{ArcFit, EdgeFit, Refusal};
+use serde::{Deserialize, Serialize};
+
+use crate::fit::{ArcFit, EdgeFit, Found, Refusal};
 use crate::geometry::{Base, Flange, Sensor, Transform, Vec3};
 use crate::watch::{Cancelled, Watch};
 
@@ -67,9 +69,11 @@ pub enum SideChoice {
 }
 
 /// Which edge of the right-angle plate a station saw.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Edge {
     /// The edge p.
+    #[default]
     P,
     /// The edge q.
     Q,
@@ -107,6 +111,16 @@ impl Reading {
             Self::Edge(edge) => Some(Vec3::new(edge.point_mm[0], 0.0, edge.point_mm[1])),
             Self::Point(point) => Some(*point),
             Self::Arc(_) | Self::Refused(_) => None,
+        }
+    }
+}
+
+impl From<Result<Found, Refusal>> for Reading {
+    fn from(found: Result<Found, Refusal>) -> Self {
+        match found {
+            Ok(Found::Arc(arc)) => Self::Arc(arc),
+            Ok(Found::Edge(edge)) => Self::Edge(edge),
+            Err(refusal) => Self::Refused(refusal),
         }
     }
 }

@@ -162,6 +162,8 @@ pub struct StationSolution {
 /// A point on an edge of the plate, through the calibration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlatePoint {
+    /// Its station's place in the list of those used, as in [`PlateReduced`].
+    pub station: usize,
     /// The caller's index of its station, as in [`super::Station::idx`].
     pub station_idx: usize,
     /// Its capture in that station.
@@ -195,7 +197,8 @@ pub struct PlateFound {
     /// Where the plate is: the origin in its corner, x along edge p, y along edge q, z normal to it; as the method has it,
     /// or fitted to its points where it has none.
     pub base_from_plate: Rigid,
-    /// One entry a point used, in the order of stations and captures.
+    /// One entry a reading used, in the order of stations and captures. The readings of a station at one pose are one point of
+    /// the data.
     pub points: Vec<PlatePoint>,
     /// How many starts there were, and how many led here.
     pub starts: Starts,

@@ -4,11 +4,11 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use crate::calibrate::Warning;
+use crate::calibrate::{Method, Mount, Solution, Warning, best_available};
 use crate::session::check::{Finding, findings};
 use crate::session::format::{Loaded, load_with_notes};
 use crate::session::{self, FurtherTarget, NothingToSolve, Session, measure};
-use crate::text::check::finding_message;
+use crate::text::check::{finding_message, touched_point_off};
 use crate::text::warning_message;
 use crate::watch::Unwatched;
 
@@ -52,44 +52,85 @@ pub fn listing(loaded: &Loaded) -> String {
     for finding in &all {
         let _ = writeln!(listing, "{}: {}", finding.code(), finding_message(finding));
     }
-    let (warnings, failure) = outcome_of_all_methods(session);
-    for warning in &warnings {
-        let _ = writeln!(listing, "{}: {}", warning.code(), warning_message(warning));
+    let Outcome { warnings, touched_off, failure } = outcome_of_all_methods(session);
+    for (method, warning) in &warnings {
+        let _ = writeln!(listing, "{}: {} ({})", warning.code(), warning_message(warning), method.id());
+    }
+    if let Some(off) = &touched_off {
+        let _ = writeln!(listing, "touched-point-off: {}", touched_point_off(off.distance_mm, off.std_mm, off.method));
     }
     // That stations are missing is said already.
     let stations_missing = all.iter().any(Finding::lacks_stations);
     if let Some(error) = failure.as_ref().filter(|_| !stations_missing) {
         let _ = writeln!(listing, "not-solvable: {error}");
     }
-    if all.is_empty() && warnings.is_empty() && failure.is_none() {
+    if all.is_empty() && warnings.is_empty() && touched_off.is_none() && failure.is_none() {
         listing.push_str("nothing odd found\n");
     }
     listing
 }
 
-/// What the methods would warn of, each code once, and why none of them runs, if so: arcs, radius and rotations show only
-/// when solved.
-fn outcome_of_all_methods(session: &Session) -> (Vec<Warning>, Option<String>) {
-    let Ok(measured) = measure(session, None, &mut Unwatched) else { return (Vec::new(), None) };
+/// What solving shows.
+#[derive(Debug, Default)]
+struct Outcome {
+    /// What the methods warn of, each code once: of the method that gives the answer, where that one does.
+    warnings: Vec<(Method, Warning)>,
+    /// A point that was touched and that the answer has somewhere else.
+    touched_off: Option<TouchedOff>,
+    /// Why none of the methods runs, if so.
+    failure: Option<String>,
+}
+
+#[derive(Debug)]
+struct TouchedOff {
+    distance_mm: f64,
+    std_mm: f64,
+    method: Method,
+}
+
+/// Runs all methods: arcs, radius and rotations show only when solved.
+fn outcome_of_all_methods(session: &Session) -> Outcome {
+    let Ok(measured) = measure(session, None, &mut Unwatched) else { return Outcome::default() };
     let problem = match session::problem(session, &measured) {
         Ok(problem) => problem,
         // A workpiece is scanned for what a calibration is worth: that none is computed from it is not odd.
-        Err(NothingToSolve::Workpiece) => return (Vec::new(), None),
-        Err(refusal) => return (Vec::new(), Some(refusal.to_string())),
+        Err(NothingToSolve::Workpiece) => return Outcome::default(),
+        Err(refusal) => return Outcome { failure: Some(refusal.to_string()), ..Outcome::default() },
     };
-    let outcomes: Vec<_> = problem.methods().iter().map(|method| problem.solve(*method)).collect();
-    let failure = outcomes[0].as_ref().err().filter(|_| outcomes.iter().all(Result::is_err)).map(ToString::to_string);
-    let mut warnings: Vec<Warning> = Vec::new();
-    for solution in outcomes.into_iter().flatten() {
-        for warning in solution.warnings {
+    let Ok(results) = problem.solve_all(problem.methods(), &mut Unwatched) else { return Outcome::default() };
+    let Some(answer) = best_available(&results) else {
+        let failure = results.first().and_then(|result| result.outcome.as_ref().err()).map(ToString::to_string);
+        return Outcome { failure, ..Outcome::default() };
+    };
+    let others = results.iter().filter_map(|result| result.outcome.as_ref().ok());
+    let mut warnings: Vec<(Method, Warning)> = Vec::new();
+    for solution in std::iter::once(answer).chain(others) {
+        for warning in &solution.warnings {
             // That a station has no sweep matters to one method only.
-            let is_said = warnings.iter().any(|known| known.code() == warning.code());
+            let is_said = warnings.iter().any(|(_, known)| known.code() == warning.code());
             if !is_said && !matches!(warning, Warning::StationSkipped { .. }) {
-                warnings.push(warning);
+                warnings.push((solution.method, warning.clone()));
             }
         }
     }
-    (warnings, failure)
+    Outcome { warnings, touched_off: touched_off(session, answer), failure: None }
+}
+
+/// Whether a touched point lies where the answer cannot have it.
+fn touched_off(session: &Session, answer: &Solution) -> Option<TouchedOff> {
+    /// What touching with a robot's tool may be off without anything being wrong, mm.
+    const TOUCH_STD_MM: f64 = 0.1;
+    /// Further off than this many σ it is hardly chance.
+    const NUM_STDS: f64 = 5.0;
+    // A tip on the flange stands still nowhere in the base.
+    let touched_mm = session.known.point_in_base_mm.filter(|_| answer.mount == Mount::OnFlange)?;
+    let std_mm = answer.uncertainty.as_ref()?.workspace_point_std_mm;
+    let distance_mm = (touched_mm - answer.target_in_base_mm).norm();
+    (distance_mm > NUM_STDS * std_mm.hypot(TOUCH_STD_MM)).then_some(TouchedOff {
+        distance_mm,
+        std_mm,
+        method: answer.method,
+    })
 }
 
 #[cfg(test)]

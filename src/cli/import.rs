@@ -11,6 +11,7 @@ use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
 use crate::geometry::{PoseConvention, PoseNotation, Tcp, Transform};
 use crate::session::import::{
     ImportError, ImportOptions, Imported, Kind, MAX_FILE_BYTES, Part, Role, Separator, Source, read, read_paths,
+    with_stations,
 };
 use crate::session::{Edit, EditRefusal, Session, SetupField, Target, load, save};
 use crate::text::import_cli as text;
@@ -39,7 +40,7 @@ pub struct ImportArgs {
     /// The session's name; the first file's if none is given.
     #[arg(long)]
     pub name: Option<String>,
-    /// What was measured; a ball if nothing is said.
+    /// What was measured; if nothing is said a plate where the poses have an edge each, else a ball.
     #[arg(long, value_enum)]
     pub target: Option<TargetArg>,
     /// The ball's radius, mm.
@@ -392,17 +393,25 @@ fn listing(imported: &Imported) -> String {
 fn session(args: &ImportArgs, sources: &[Source], imported: Imported) -> Result<Session, String> {
     if let Some(path) = &args.append_to {
         let session = load(path).map_err(|error| error.to_string())?;
-        return with_stations(&session, imported.stations);
+        return with_stations(&session, imported.stations).map_err(|refusal| refusal.to_string());
     }
     let target = match (args.target, args.radius_mm) {
         (None | Some(TargetArg::Ball), Some(radius_mm)) => Some(Target::ball(radius_mm)),
-        (Some(TargetArg::Plate), _) => Some(Target::RightAnglePlate),
-        (Some(TargetArg::Point), _) => Some(Target::Point),
-        (Some(TargetArg::Workpiece), _) => Some(Target::Workpiece),
+        (Some(TargetArg::Plate | TargetArg::Point | TargetArg::Workpiece), Some(_)) => {
+            return Err(text::RADIUS_OF_NO_BALL.to_owned());
+        }
+        (Some(TargetArg::Plate), None) => Some(Target::RightAnglePlate),
+        (Some(TargetArg::Point), None) => Some(Target::Point),
+        (Some(TargetArg::Workpiece), None) => Some(Target::Workpiece),
         // A session says itself what was measured.
         (None, None) if imported.session.is_some() => None,
+        // Nothing else has edges.
+        (None, None) if imported.has_edges() => Some(Target::RightAnglePlate),
         (None | Some(TargetArg::Ball), None) => return Err(text::RADIUS_MISSING.to_owned()),
     };
+    if imported.has_edges() && target != Some(Target::RightAnglePlate) {
+        return Err(text::EDGES_OF_NO_PLATE.to_owned());
+    }
     let refused = |refusal: EditRefusal| refusal.to_string();
     if imported.session.is_some() {
         let name = args.name.clone().map(SetupField::Name);
@@ -413,8 +422,4 @@ fn session(args: &ImportArgs, sources: &[Source], imported: Imported) -> Result<
     let first = sources.first().map_or("", |source| source.name.as_str());
     let name = args.name.clone().unwrap_or_else(|| first.rsplit_once('.').map_or(first, |(stem, _)| stem).to_owned());
     imported.into_session(name, target.unwrap_or(Target::Point)).map_err(refused)
-}
-
-fn with_stations(session: &Session, stations: Vec<crate::session::Station>) -> Result<Session, String> {
-    Edit::InsertStations { at: usize::MAX, stations }.apply(session).map_err(|refusal| refusal.to_string())
 }

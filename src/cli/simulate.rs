@@ -118,9 +118,9 @@ pub struct SimulateArgs {
     /// What is measured.
     #[arg(long, value_enum, default_value_t)]
     pub target: TargetArg,
-    /// The workpiece.
-    #[arg(long, value_enum, default_value_t)]
-    pub part: PartArg,
+    /// The workpiece; a square block if not given.
+    #[arg(long, value_enum)]
+    pub part: Option<PartArg>,
     /// What else the same sensor measures on the same robot; may be given several times.
     #[arg(long, value_enum, value_name = "TARGET", value_delimiter = ',')]
     pub further: Vec<FurtherArg>,
@@ -131,18 +131,18 @@ pub struct SimulateArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=10_000))]
     pub stations: Option<u16>,
     /// Captures a station: of a ball 21, the first strike included, and 1 gives a fixed-point session; of a workpiece the
-    /// profiles of a scan, over its whole length if not given; otherwise 1.
+    /// profiles of a scan, over its whole length if not given; of a plate or point 1, more are taken standing still.
     #[arg(
         long, visible_alias = "captures", value_name = "N",
         value_parser = clap::value_parser!(u16).range(1..=10_000)
     )]
     pub steps: Option<u16>,
-    /// Points a profile.
-    #[arg(long, value_name = "N", default_value_t = 800, value_parser = clap::value_parser!(u32).range(2..=100_000))]
-    pub points: u32,
-    /// Radius of the ball, mm.
-    #[arg(long, value_name = "MM", default_value_t = SimulationOptions::default().radius_mm, value_parser = radius)]
-    pub radius_mm: f64,
+    /// Points a profile; 800 if not given.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=100_000))]
+    pub points: Option<u32>,
+    /// Radius of the ball, mm; 15 if not given.
+    #[arg(long, value_name = "MM", value_parser = radius)]
+    pub radius_mm: Option<f64>,
     /// Write points that are already reduced in place of the profiles of a plate or point.
     #[arg(long)]
     pub reduced: bool,
@@ -179,9 +179,9 @@ pub struct SimulateArgs {
     /// How far the stations turn about the vertical, degrees; 60 of a ball, otherwise 20 if not given.
     #[arg(long, value_name = "DEG", value_parser = spin)]
     pub spin_deg: Option<f64>,
-    /// Angle between the robot's travel and the laser's normal, degrees.
-    #[arg(long, value_name = "DEG", default_value_t = 0.0, value_parser = tilt)]
-    pub travel_off_normal_deg: f64,
+    /// Angle between the robot's travel across a ball and the laser's normal, degrees; 0 if not given.
+    #[arg(long, value_name = "DEG", value_parser = tilt)]
+    pub travel_off_normal_deg: Option<f64>,
     /// Where the sensor is.
     #[arg(long, value_enum, default_value_t)]
     pub mount: MountArg,
@@ -211,6 +211,16 @@ pub struct SimulateArgs {
 /// Why nothing is simulated.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SimulateRefusal {
+    /// Nothing that is simulated depends on it.
+    #[error("{option}: found it with {found}, where it has no effect, expected {expected} or no {option}")]
+    NoEffect {
+        /// The option.
+        option: &'static str,
+        /// What it was given with.
+        found: &'static str,
+        /// What it belongs to.
+        expected: &'static str,
+    },
     /// The faults are those of a ball session.
     #[error("--fault: found {found} with another target, expected --target ball")]
     FaultOfBall {
@@ -284,7 +294,7 @@ fn options(args: &SimulateArgs) -> Result<SimulationOptions, SimulateRefusal> {
         TargetArg::Ball => SimulationTarget::Ball,
         TargetArg::Plate => SimulationTarget::Part(PartKind::Plate),
         TargetArg::Point => SimulationTarget::Part(PartKind::Pin),
-        TargetArg::Workpiece => SimulationTarget::Part(args.part.kind()),
+        TargetArg::Workpiece => SimulationTarget::Part(args.part.unwrap_or_default().kind()),
     };
     let further: Vec<SimulationTarget> = args.further.iter().map(|further| further.target()).collect();
     let usual = SimulationOptions::of(target);
@@ -297,7 +307,9 @@ fn options(args: &SimulateArgs) -> Result<SimulationOptions, SimulateRefusal> {
     if args.reduced && (is_ball || target.is_workpiece()) {
         return Err(SimulateRefusal::NotReduced { found: target.name() });
     }
-    let (step_mm, num_steps) = steps(args, target, &usual)?;
+    refuse_without_effect(args, target, &further)?;
+    let radius_mm = args.radius_mm.unwrap_or(usual.radius_mm);
+    let (step_mm, num_steps) = steps(args, target, radius_mm, &usual)?;
     let num_stations = args.stations.map_or(usual.num_stations, usize::from);
     let num_all = if target == SimulationTarget::Part(PartKind::Plate) { 2 * num_stations } else { num_stations };
     if let Some(found) = args.bad_pose.filter(|number| usize::from(*number) > num_all) {
@@ -309,8 +321,8 @@ fn options(args: &SimulateArgs) -> Result<SimulationOptions, SimulateRefusal> {
         further,
         num_stations,
         num_steps,
-        num_points: args.points as usize,
-        radius_mm: args.radius_mm,
+        num_points: args.points.map_or(usual.num_points, |points| points as usize),
+        radius_mm,
         step_mm,
         section_offset_mm: args.section_offset_mm,
         profile_std_mm: args.profile_std_mm,
@@ -320,7 +332,7 @@ fn options(args: &SimulateArgs) -> Result<SimulationOptions, SimulateRefusal> {
         orientation_std_deg: args.orientation_std_deg,
         tilt_deg: args.tilt_deg.unwrap_or(usual.tilt_deg),
         spin_deg: args.spin_deg.unwrap_or(usual.spin_deg),
-        travel_off_normal_deg: args.travel_off_normal_deg,
+        travel_off_normal_deg: args.travel_off_normal_deg.unwrap_or(usual.travel_off_normal_deg),
         mount: match args.mount {
             MountArg::OnFlange => Mount::OnFlange,
             MountArg::Fixed => Mount::Fixed,
@@ -339,16 +351,50 @@ fn options(args: &SimulateArgs) -> Result<SimulationOptions, SimulateRefusal> {
     })
 }
 
+/// What is asked for and would change nothing is a mistake somewhere else.
+fn refuse_without_effect(
+    args: &SimulateArgs,
+    target: SimulationTarget,
+    further: &[SimulationTarget],
+) -> Result<(), SimulateRefusal> {
+    let is_ball = target == SimulationTarget::Ball;
+    let is_of_a_sweep = is_ball && args.steps != Some(1);
+    let has_profiles =
+        !args.reduced || further.iter().any(|further| *further == SimulationTarget::Ball || further.is_workpiece());
+    let has_ball = is_ball || further.contains(&SimulationTarget::Ball);
+    let ball = "--target ball";
+    let own = match args.target {
+        TargetArg::Ball => ball,
+        TargetArg::Plate => "--target plate",
+        TargetArg::Point => "--target point",
+        TargetArg::Workpiece => "--target workpiece",
+    };
+    let reduced = "--reduced";
+    [
+        ("--part", args.part.is_some(), args.target == TargetArg::Workpiece, own, "--target workpiece"),
+        ("--radius-mm", args.radius_mm.is_some(), has_ball, own, ball),
+        ("--section-offset-mm", args.section_offset_mm.is_some(), is_ball, own, ball),
+        ("--travel-off-normal-deg", args.travel_off_normal_deg.is_some(), has_ball, own, ball),
+        ("--step-mm", args.step_mm.is_some(), is_ball || target.is_workpiece(), own, "--target ball or workpiece"),
+        ("--step-mm", args.step_mm.is_some(), !is_ball || is_of_a_sweep, "--steps 1", "more steps"),
+        ("--points", args.points.is_some(), has_profiles, reduced, "profiles"),
+        ("--dirty", !args.dirty.is_empty(), has_profiles, reduced, "profiles"),
+    ]
+    .into_iter()
+    .find(|(_, is_given, has_effect, ..)| *is_given && !has_effect)
+    .map_or(Ok(()), |(option, _, _, found, expected)| Err(SimulateRefusal::NoEffect { option, found, expected }))
+}
+
 /// The commanded step and the number of captures a station.
 fn steps(
     args: &SimulateArgs,
     target: SimulationTarget,
+    radius_mm: f64,
     usual: &SimulationOptions,
 ) -> Result<(f64, usize), SimulateRefusal> {
     /// So that 21 captures from 0.6 R reach well past the largest arc.
     const STEP_RATIO: f64 = 0.05;
     let given = args.steps.map(usize::from);
-    let radius_mm = args.radius_mm;
     match target {
         SimulationTarget::Ball => {
             if let Some(found_mm) = args.section_offset_mm.filter(|offset_mm| *offset_mm >= radius_mm) {
@@ -454,6 +500,8 @@ mod tests {
         let rough = |arguments: &str| options(&parsed(arguments).expect("valid")).expect("valid").rough_mounting;
         assert_eq!(rough("--further point,plate"), Some(RoughMounting { off_deg: 5.0, off_mm: 10.0 }));
         assert_eq!(rough("--target plate --rough-mounting none"), None);
+        let radius_mm = |arguments: &str| options(&parsed(arguments).expect("valid")).expect("valid").radius_mm;
+        assert!(radius_mm("--target plate --further ball --radius-mm 12").to_bits() == 12.0_f64.to_bits());
         assert_eq!(rough("--rough-mounting 2,3.5"), Some(RoughMounting { off_deg: 2.0, off_mm: 3.5 }));
     }
 
@@ -482,6 +530,14 @@ mod tests {
     fn arguments_that_do_not_go_together_are_refused_in_one_line() {
         for (arguments, fragment) in [
             ("--target plate --fault drift", "--fault: found drift with another target"),
+            ("--target plate --part teeth", "--part: found it with --target plate, where it has no effect"),
+            ("--target plate --radius-mm 12 --steps 5", "expected --target ball or no --radius-mm"),
+            ("--target point --section-offset-mm 3", "--section-offset-mm: found it with"),
+            ("--target workpiece --travel-off-normal-deg 3", "--travel-off-normal-deg: found it with"),
+            ("--target plate --step-mm 3", "expected --target ball or workpiece or no --step-mm"),
+            ("--steps 1 --step-mm 1.5", "--step-mm: found it with --steps 1"),
+            ("--target point --reduced --points 100", "--points: found it with --reduced"),
+            ("--target plate --reduced --dirty holes", "--dirty: found it with --reduced"),
             ("--reduced", "--reduced: found ball, expected --target plate or point"),
             ("--target workpiece --reduced", "--reduced: found square block"),
             ("--target workpiece --step-mm 0", "--step-mm: found 0"),

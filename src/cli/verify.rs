@@ -4,12 +4,12 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use crate::app::verification::{as_further, verification};
+use crate::app::verification::{adding_targets_of, verification};
 use crate::calibrate::MethodResult;
 use crate::report::calibration_file::read_matrix;
 use crate::report::digits::{fixed, signed};
 use crate::report::verification_file::{Checked, verification_file};
-use crate::session::{self, Edit, Session, measure};
+use crate::session::{self, Session, measure};
 use crate::text::verify as words;
 use crate::verify::{Calibration, Distances, Measurement, Origin, Stability, TargetEvidence, Verification};
 use crate::watch::Unwatched;
@@ -59,7 +59,7 @@ fn verified(args: &VerifyArgs) -> Result<String, Refusal> {
         Err(_) => None,
     };
     let solved = own.as_ref().map(|(problem, results)| (problem, results.as_slice()));
-    let found = verification(&session, &measured, solved, &given, &mut Unwatched)
+    let found = verification(&session, &measured, solved, &given, &[], &mut Unwatched)
         .map_err(|cancelled| nothing(cancelled.to_string()))?;
     if found.calibrations.is_empty() {
         let results = own.as_ref().map_or(&[][..], |(_, results)| results.as_slice());
@@ -87,7 +87,7 @@ fn with_further(args: &VerifyArgs) -> Result<Session, Refusal> {
             return Err(wrong(words::other_mount(&shown)));
         }
         let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-        let edit = Edit::AddFurther(Box::new(as_further(other, &name)));
+        let edit = adding_targets_of(other, &name);
         session = edit.apply(&session).map_err(|refusal| wrong(format!("{shown}: {refusal}")))?;
     }
     Ok(session)

@@ -7,10 +7,12 @@ use nalgebra::{SMatrix, UnitQuaternion};
 use crate::calibrate::observation::{CentreObservation, NUM_UNKNOWNS, State};
 use crate::calibrate::rotation_start::{PoseGeometry, octahedral_rotations};
 use crate::calibrate::solver::{Hessian, covariance_for_unit_noise, minimise};
-use crate::calibrate::{BallProblem, Capture, Method, Mount, Reading, SideChoice, Station, solve};
+use crate::calibrate::{BallProblem, Method, Mount, Station, solve};
 use crate::geometry::so3::hat;
 use crate::geometry::stats::{SplitMix, median};
 use crate::geometry::{Mat3, Rigid, Vec3};
+
+use super::station_reading::{MIN_STEPS, StationReading, poses_of, single_capture_station, travel_direction};
 
 /// Stations that have to agree: four determine the unknowns and the sides, and a fifth that fits is no accident. Besides,
 /// the agreeing ones have to be more than half: of two halves that contradict each other either may be the wrong one.
@@ -35,50 +37,7 @@ const LAST_STEPS: usize = 10;
 const FINALISTS: usize = 4;
 /// A misfit that would be this many standard deviations of a normal value is no noise: once in 300 000 stations.
 const MISFIT_AT_STDS: f64 = 4.5;
-/// Sections before the curve of the squares of their radii tells on which side the ball is.
-const MIN_STEPS: usize = 3;
-/// A sweep that travels less than this part of the ball's radius is one section.
-const MIN_TRAVEL_PART: f64 = 0.1;
-
 type Jacobian = SMatrix<f64, 3, NUM_UNKNOWNS>;
-
-/// What one station says about the ball, by itself.
-#[derive(Clone, Debug)]
-pub(super) struct StationReading<'a> {
-    /// The station.
-    pub station: &'a Station,
-    /// The capture that `centre` belongs to, with its pose.
-    capture: &'a Capture,
-    base_from_flange: Rigid,
-    /// The ball's centre in the sensor frame, mm; the sign of y is a guess where the side is open.
-    centre: Vec3,
-    side_is_open: bool,
-    /// By the noise of the profile, mm².
-    covariance: Mat3,
-}
-
-impl StationReading<'_> {
-    /// The centre as measured, on the side where it is predicted if that is open.
-    fn centre_near(&self, predicted: Vec3) -> Vec3 {
-        if self.side_is_open { self.mirrored_to(predicted.y) } else { self.centre }
-    }
-
-    fn mirrored_to(&self, y: f64) -> Vec3 {
-        Vec3::new(self.centre.x, self.centre.y.abs() * if y < 0.0 { -1.0 } else { 1.0 }, self.centre.z)
-    }
-
-    /// How far the prediction of a state is from what was measured, in the sensor frame, mm.
-    fn misfit(&self, state: &State) -> Vec3 {
-        let predicted = state.ball_in_sensor(&self.base_from_flange);
-        predicted - self.centre_near(predicted)
-    }
-
-    /// The same with the ball on either side, whatever is said about it.
-    fn misfit_on_either_side_mm(&self, state: &State) -> f64 {
-        let predicted = state.ball_in_sensor(&self.base_from_flange);
-        (predicted - self.mirrored_to(predicted.y)).norm()
-    }
-}
 
 /// The stations of a problem, each by itself.
 #[derive(Clone, Debug)]
@@ -156,81 +115,7 @@ impl<'a> Stations<'a> {
 
     /// What a station says with these poses in place of its own.
     pub fn reading(&self, station: &'a Station, poses: &[Rigid]) -> Option<StationReading<'a>> {
-        let (capture, base_from_flange) =
-            station.captures.iter().zip(poses).find(|(capture, _)| !matches!(capture.reading, Reading::Refused(_)))?;
-        let of_centre = |centre: Vec3, side_is_open: bool, covariance: Mat3| StationReading {
-            station,
-            capture,
-            base_from_flange: *base_from_flange,
-            centre,
-            side_is_open,
-            covariance,
-        };
-        match &capture.reading {
-            Reading::Edge(_) | Reading::Refused(_) => None,
-            Reading::Point(point) => Some(of_centre(*point, false, Mat3::zeros())),
-            Reading::Arc(arc) => {
-                let [std_x, std_z, std_l] = arc.std_mm();
-                let l = arc.circle.radius_mm;
-                let (y, std_y, side_is_open) = self.y_of_sweep(station, poses, base_from_flange).map_or_else(
-                    || {
-                        let radius_mm = self.problem.radius_mm;
-                        let size = ((radius_mm - l).max(0.0) * (radius_mm + l)).sqrt();
-                        // At the largest arc the linear formula diverges; |y| stays below what an error of l makes.
-                        let std = (l * std_l / size.max(f64::MIN_POSITIVE)).min((2.0 * radius_mm * std_l).sqrt());
-                        match station.side {
-                            SideChoice::Given(side) => (side.sign() * size, std, false),
-                            SideChoice::Auto => (size, std, true),
-                        }
-                    },
-                    |(y, std)| (y, std, false),
-                );
-                let std = Vec3::new(std_x, std_y, std_z);
-                Some(of_centre(
-                    Vec3::new(arc.circle.x_mm, y, arc.circle.z_mm),
-                    side_is_open,
-                    Mat3::from_diagonal(&std.component_mul(&std)),
-                ))
-            }
-        }
-    }
-
-    /// Where the ball is beside the laser plane at a pose, by the sections of the whole sweep, with its σ, mm.
-    ///
-    /// l² + t² = R² − y² + 2 y t with the travel t is a straight line whatever the radius.
-    fn y_of_sweep(&self, station: &Station, poses: &[Rigid], from: &Rigid) -> Option<(f64, f64)> {
-        let steps: Vec<(f64, f64, f64)> = station
-            .captures
-            .iter()
-            .zip(poses)
-            .filter_map(|(capture, pose)| match &capture.reading {
-                Reading::Arc(arc) => {
-                    let travel = self.direction.dot(&travel_in_flange(self.problem.mount, from, pose));
-                    Some((travel, arc.circle.radius_mm, arc.std_mm()[2]))
-                }
-                Reading::Edge(_) | Reading::Refused(_) | Reading::Point(_) => None,
-            })
-            .collect();
-        #[expect(clippy::cast_precision_loss, reason = "a sweep has few steps")]
-        let scale = 1.0 / steps.len() as f64;
-        let squares = |(travel, l, _): &(f64, f64, f64)| l * l + travel * travel;
-        let mean_travel = steps.iter().map(|step| step.0).sum::<f64>() * scale;
-        let mean_square = steps.iter().map(squares).sum::<f64>() * scale;
-        let spread: f64 = steps.iter().map(|step| (step.0 - mean_travel).powi(2)).sum();
-        if steps.len() < MIN_STEPS || (spread * scale).sqrt() < MIN_TRAVEL_PART * self.problem.radius_mm {
-            return None;
-        }
-        let cross: f64 = steps.iter().map(|step| (step.0 - mean_travel) * (squares(step) - mean_square)).sum();
-        let y = 0.5 * cross / spread;
-        let travel_variance = self.problem.noise.position_std_mm.unwrap_or(0.0).powi(2);
-        let variance = steps
-            .iter()
-            .map(|(travel, l, std_l)| {
-                let of_square = 4.0 * (l * l * std_l * std_l + (travel - y).powi(2) * travel_variance);
-                ((travel - mean_travel) / spread).powi(2) * of_square
-            })
-            .sum::<f64>();
-        Some((y, 0.5 * variance.sqrt()))
+        StationReading::of(self.problem, self.direction, station, poses)
     }
 
     /// The same with every sweep read the other way along: where steps are counted against the laser's normal.
@@ -562,47 +447,6 @@ impl<'a> Stations<'a> {
 
 /// No arm is better than this, mm²: it keeps exact data weighable.
 const LEAST_VARIANCE: f64 = 1e-12;
-
-/// The poses of a station's captures.
-pub(super) fn poses_of(station: &Station) -> Vec<Rigid> {
-    station.captures.iter().map(|capture| *capture.base_from_flange.rigid()).collect()
-}
-
-fn single_capture_station(reading: &StationReading<'_>) -> Station {
-    let reading_of_capture =
-        if reading.side_is_open { reading.capture.reading.clone() } else { Reading::Point(reading.centre) };
-    Station {
-        captures: vec![Capture { reading: reading_of_capture, ..reading.capture.clone() }],
-        ..reading.station.clone()
-    }
-}
-
-/// The robot's travel between two poses of a sweep, in the flange frame.
-fn travel_in_flange(mount: Mount, from: &Rigid, to: &Rigid) -> Vec3 {
-    match mount {
-        Mount::OnFlange => from.rotation.inverse() * (to.translation.vector - from.translation.vector),
-        // The poses are inverted and the sensor stands still: the robot's own travel, turned round.
-        Mount::Fixed => from.inverse().translation.vector - to.inverse().translation.vector,
-    }
-}
-
-/// The direction in the flange in which a positive step travels; where no steps are recorded, or the other way round.
-fn travel_direction(problem: &BallProblem) -> Vec3 {
-    let travels = || {
-        problem.stations.iter().flat_map(|station| {
-            let first = station.captures.first().map(|capture| *capture.base_from_flange.rigid());
-            station.captures.iter().filter_map(move |capture| {
-                let travel = travel_in_flange(problem.mount, &first?, capture.base_from_flange.rigid());
-                Some((travel, capture.commanded_travel_mm.unwrap_or(0.0)))
-            })
-        })
-    };
-    let spread: Mat3 = travels().map(|(travel, _)| travel * travel.transpose()).sum();
-    let eigen = spread.symmetric_eigen();
-    let direction = eigen.eigenvectors.column(eigen.eigenvalues.imax()).into_owned();
-    let agreement: f64 = travels().map(|(travel, commanded)| commanded * direction.dot(&travel)).sum();
-    if agreement < 0.0 { -direction } else { direction }
-}
 
 /// A value of the F distribution as the standard normal value that is as improbable, after Wilson and Hilferty.
 fn normal_score(f: f64, above: f64, below: f64) -> f64 {

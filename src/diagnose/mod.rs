@@ -12,6 +12,7 @@ pub mod hypotheses;
 mod model;
 mod plate;
 pub mod remedy;
+mod station_reading;
 pub mod stations;
 mod verdict;
 mod weighing;

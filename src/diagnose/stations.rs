@@ -4,9 +4,10 @@ use crate::calibrate::SideChoice;
 use crate::geometry::Rigid;
 
 use super::Case;
-use super::consensus::{Consensus, MIN_CLEAN_STATIONS, Stations, needed_stations, poses_of};
+use super::consensus::{Consensus, MIN_CLEAN_STATIONS, Stations, needed_stations};
 use super::finding::{Evidence, Fault, Finding, Plot, Severity, StationBar};
 use super::remedy::Remedy;
+use super::station_reading::poses_of;
 
 /// Below this nobody need look, mm: the resolution of a good arm.
 const WORTH_NAMING_MM: f64 = 0.05;

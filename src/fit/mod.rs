@@ -12,6 +12,7 @@ pub mod geometric;
 pub mod line;
 pub mod ransac;
 pub mod robust;
+mod sought;
 pub(crate) mod sums;
 mod windows;
 
@@ -19,3 +20,4 @@ pub use arc::{ArcFit, ArcOptions, PointClass, extract_arc};
 pub use circle::{Circle, CircleFit, CircleMethod};
 pub use edge::{EdgeFit, EdgeOptions, Feature, Flank, Sighting, extract_edge};
 pub use error::{ArcRefusal, EdgeRefusal, FitError, Refusal};
+pub use sought::{Found, Sought};

@@ -17,6 +17,7 @@ pub mod frame;
 mod makers;
 pub mod notation;
 pub mod profile;
+pub mod scatter;
 pub mod se3;
 pub mod so3;
 pub mod stats;
@@ -27,6 +28,7 @@ pub use convention::PoseConvention;
 pub use frame::{Base, Flange, Frame, Sensor, Tcp};
 pub use notation::PoseNotation;
 pub use profile::Profile;
+pub use scatter::Scatter;
 pub use transform::Transform;
 
 /// A point or vector in three dimensions, mm.

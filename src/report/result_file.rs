@@ -163,9 +163,7 @@ fn uncertainty(uncertainty: &Uncertainty, solution: &Solution) -> Value {
     let covariance: Vec<Vec<f64>> =
         uncertainty.covariance.row_iter().map(|row| row.iter().copied().collect()).collect();
     let (weakest, weakest_std_mm) = uncertainty.weakest_direction();
-    let by_radius = solution.change_by_radius;
-    let rotation_by_radius = by_radius.fixed_rows::<3>(0).map(f64::to_degrees);
-    json!({
+    let mut entry = json!({
         "translation_std_mm": vector(uncertainty.translation_std_mm),
         "rotation_std_deg": vector(uncertainty.rotation_std_rad.map(f64::to_degrees)),
         "workspace_point_std_mm": uncertainty.workspace_point_std_mm,
@@ -174,12 +172,17 @@ fn uncertainty(uncertainty: &Uncertainty, solution: &Solution) -> Value {
         "workspace_point_95_mm": uncertainty.workspace_point_95_mm,
         "degrees_of_freedom": uncertainty.degrees_of_freedom.is_finite().then_some(uncertainty.degrees_of_freedom),
         "weakest_direction": direction_entry(weakest, weakest_std_mm),
-        "by_radius": {
+    });
+    // Plates and tips have no radius.
+    if Method::BALL.contains(&solution.method) {
+        let by_radius = solution.change_by_radius;
+        entry["by_radius"] = json!({
             "workspace_point_mm_per_mm": vector(solution.workspace_point_by_radius),
             "translation_mm_per_mm": vector(by_radius.fixed_rows::<3>(3).into_owned()),
-            "rotation_deg_per_mm": vector(rotation_by_radius),
-        },
-    })
+            "rotation_deg_per_mm": vector(by_radius.fixed_rows::<3>(0).map(f64::to_degrees)),
+        });
+    }
+    entry
 }
 
 fn noise(noise: &NoiseModel) -> Value {

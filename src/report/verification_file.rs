@@ -179,7 +179,7 @@ fn distances_entry(distances: &Distances) -> Value {
         "plane_histogram": histogram(points().map(|point| point.to_plane_mm).collect(), distances.to_plane.max_mm),
         "angle_deg": distances.angle_rad.to_degrees(),
         "gap_mm": distances.gap_mm,
-        "plane": { "normal": vector(distances.plane.normal), "point_mm": vector(distances.plane.point_mm) },
+        "plane": { "normal": vector(distances.plane.normal), "point_mm": vector(distances.centroid_mm) },
         "lines": distances
             .lines
             .iter()

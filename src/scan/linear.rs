@@ -27,6 +27,10 @@ pub(super) struct Linear<const N: usize> {
     /// Root mean square of what is left over by the points used.
     pub(super) rms: f64,
     pub(super) num_used: usize,
+    /// Profiles that hold them.
+    pub(super) num_profiles: usize,
+    /// Whether the covariance tells how whole profiles scatter, or takes every point for itself: few profiles do not tell.
+    pub(super) is_from_profiles: bool,
 }
 
 /// Solves; `None` where the rows do not determine a solution.
@@ -64,8 +68,8 @@ pub(super) fn solve<const N: usize>(rows: &[Row<N>]) -> Option<Linear<N>> {
     let num_left = scores.len();
     let profiles = || scores.chunk_by(|a, b| a.0 == b.0);
     let num_profiles = profiles().count();
-    // Few profiles do not tell how they scatter; then every point counts for itself.
-    let covariance = if num_profiles > N + 3 {
+    let is_from_profiles = num_profiles > N + 3;
+    let covariance = if is_from_profiles {
         let factor = num_profiles as f64 / (num_profiles - N) as f64;
         profiles()
             .map(|profile| inverse * profile.iter().fold(SVector::<f64, N>::zeros(), |sum, (_, score)| sum + score))
@@ -73,7 +77,32 @@ pub(super) fn solve<const N: usize>(rows: &[Row<N>]) -> Option<Linear<N>> {
     } else {
         inverse * (squares / (num_left.saturating_sub(N)).max(1) as f64)
     };
-    Some(Linear { solution, covariance, rms: (squares / num_left.max(1) as f64).sqrt(), num_used: num_left })
+    Some(Linear {
+        solution,
+        covariance,
+        rms: (squares / num_left.max(1) as f64).sqrt(),
+        num_used: num_left,
+        num_profiles,
+        is_from_profiles,
+    })
+}
+
+/// Variance of whole profiles about the mean of their group, from many groups of (profile, value) with few profiles each;
+/// `None` where no group has two.
+#[expect(clippy::cast_precision_loss, reason = "counts of profiles")]
+pub(super) fn pooled_scatter(groups: impl IntoIterator<Item = Vec<(u32, f64)>>) -> Option<f64> {
+    let (mut squares, mut freedom) = (0.0, 0);
+    for mut group in groups {
+        group.sort_by_key(|(profile, _)| *profile);
+        let middles: Vec<f64> = group
+            .chunk_by(|a, b| a.0 == b.0)
+            .map(|profile| median(&mut profile.iter().map(|(_, value)| *value).collect::<Vec<_>>()))
+            .collect();
+        let mean = middles.iter().sum::<f64>() / middles.len().max(1) as f64;
+        squares += middles.iter().map(|middle| (middle - mean).powi(2)).sum::<f64>();
+        freedom += middles.len().saturating_sub(1);
+    }
+    (freedom > 0).then(|| squares / freedom as f64)
 }
 
 #[cfg(test)]

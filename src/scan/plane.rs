@@ -1,7 +1,7 @@
 //! Planes: total least squares, robust against what is not of the plane, with what is known of them.
 
 use crate::geometry::stats::{STD_OVER_MAD, SplitMix, median};
-use crate::geometry::{Mat3, Vec3};
+use crate::geometry::{Mat3, Scatter, Vec3};
 
 use super::lanes::{for_pieces, sum_over};
 use super::{Cloud, PointSet, ScanError};
@@ -125,21 +125,9 @@ pub fn fit_plane(cloud: &Cloud, set: &PointSet) -> Result<PlaneFit, ScanError> {
 
 /// The plane of a small number of points by plain total least squares, with the root mean square of their distances.
 pub(super) fn plane_of(points: impl Iterator<Item = Vec3> + Clone) -> Option<(Plane, f64)> {
-    let mut count = 0.0;
-    let mut sum = Vec3::zeros();
-    for point in points.clone() {
-        sum += point;
-        count += 1.0;
-    }
-    if count < 3.0 {
-        return None;
-    }
-    let mean = sum / count;
-    let scatter = points.fold(Mat3::zeros(), |scatter, point| scatter + (point - mean) * (point - mean).transpose());
-    let eigen = scatter.symmetric_eigen();
-    let least = eigen.eigenvalues.imin();
-    let rms = (eigen.eigenvalues[least].max(0.0) / count).sqrt();
-    Some((Plane::through(mean, eigen.eigenvectors.column(least).into_owned()), rms))
+    points.clone().nth(2)?;
+    let scatter = Scatter::of(points)?;
+    Some((Plane::through(scatter.centroid_mm, scatter.narrowest), scatter.thickness_mm))
 }
 
 /// Sums over the points within a distance of a plane, about the cloud's origin.

@@ -193,7 +193,7 @@ fn settle<const N: usize>(
                 Row { terms, value, profile: *profile }
             })
             .collect();
-        let Linear { solution, covariance, rms, num_used } = solve(&rows)?;
+        let Linear { solution, covariance, rms, num_used, .. } = solve(&rows)?;
         apply(shape, &solution);
         if !(shape.radius_mm.is_finite() && shape.radius_mm > 0.0) {
             return None;

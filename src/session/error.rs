@@ -65,6 +65,32 @@ pub enum SessionError {
         /// What the JSON reader says.
         problem: String,
     },
+    /// JSON that ends in the middle.
+    #[error(
+        "{file}, line {line}, column {column}: found the end of the file, expected more of the session: the file was cut off, and what is missing cannot be guessed; take it from a copy, or restart Handeye, which offers what it has kept of unsaved sessions"
+    )]
+    CutOff {
+        /// The file.
+        file: String,
+        /// Line of the end, from 1.
+        line: usize,
+        /// Column of the end in bytes, from 1.
+        column: usize,
+    },
+    /// A number that JSON does not have.
+    #[error(
+        "{file}, line {line}, column {column}: found {found}, expected a finite number; write null in z_mm for a point that is missing, elsewhere the number that was measured"
+    )]
+    NotANumber {
+        /// The file.
+        file: String,
+        /// Line, from 1.
+        line: usize,
+        /// Column in bytes, from 1.
+        column: usize,
+        /// What stands there.
+        found: String,
+    },
     /// A session of a newer program.
     #[error(
         "{file}: version: found {found}, expected at most {supported}: a newer Handeye wrote this session, open it with that one"

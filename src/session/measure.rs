@@ -1,11 +1,12 @@
-//! From a session's profiles to arcs and edge points, and from these to the problem that the methods solve.
+//! From a session's profiles to arcs and edge points, and from these to the problem that the methods solve. Profiles of a scan
+//! are kept as they are: nothing is looked for in them.
 
 use std::sync::Arc;
 
 use thiserror::Error;
 
 use crate::calibrate::{self, BallProblem, Mount, Noise, PlateProblem, PlateStation, Problem};
-use crate::fit::{ArcOptions, ArcRefusal, EdgeOptions, Feature, Refusal, extract_arc, extract_edge};
+use crate::fit::{ArcOptions, EdgeOptions, Feature, Sought};
 use crate::geometry::{Profile, Transform};
 use crate::watch::{Cancelled, Watch};
 
@@ -32,47 +33,82 @@ pub enum NothingToSolve {
     Rgbd,
 }
 
-/// What is looked for in the profiles of a target.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Search {
-    Arc(ArcOptions),
-    Edge(EdgeOptions),
-    /// The profiles are the result.
-    Nothing,
+/// What is looked for in the profiles of a target; `None` where the profiles themselves are the result.
+#[must_use]
+pub const fn sought(target: &Target, profile_std_mm: Option<f64>) -> Option<Sought> {
+    match target {
+        Target::Ball { radius_mm, .. } => Some(Sought::Arc(ArcOptions { ball_radius_mm: *radius_mm, profile_std_mm })),
+        Target::RightAnglePlate => Some(Sought::Edge(EdgeOptions { feature: None, profile_std_mm })),
+        Target::Point => Some(Sought::Edge(EdgeOptions { feature: Some(Feature::Tip), profile_std_mm })),
+        Target::Workpiece | Target::Rgbd { .. } => None,
+    }
 }
 
-impl Search {
-    fn of(target: &Target, profile_std_mm: Option<f64>) -> Self {
-        match target {
-            Target::Ball { radius_mm, .. } => Self::Arc(ArcOptions { ball_radius_mm: *radius_mm, profile_std_mm }),
-            Target::RightAnglePlate => Self::Edge(EdgeOptions { feature: None, profile_std_mm }),
-            Target::Point => Self::Edge(EdgeOptions { feature: Some(Feature::Tip), profile_std_mm }),
-            Target::Workpiece | Target::Rgbd { .. } => Self::Nothing,
-        }
-    }
+fn seen(sought: Option<&Sought>, profile: &Profile) -> Seen {
+    sought.map_or_else(|| Seen::Scan(ScanLine::of(profile)), |sought| Seen::Target(sought.find(profile).into()))
+}
 
-    fn reading(&self, profile: &Profile) -> calibrate::Reading {
-        let refused = |refusal: Refusal| calibrate::Reading::Refused(refusal);
-        match self {
-            Self::Arc(options) => extract_arc(profile, options)
-                .map_or_else(|refusal| refused(refusal.into()), |arc| calibrate::Reading::Arc(Arc::new(arc))),
-            Self::Edge(options) => extract_edge(profile, options)
-                .map_or_else(|refusal| refused(refusal.into()), |edge| calibrate::Reading::Edge(Arc::new(edge))),
-            Self::Nothing => refused(ArcRefusal::NoBall.into()),
-        }
+/// A profile of a scan: which part of the surface it holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScanLine {
+    /// Points of the profile, valid or not.
+    pub num_points: usize,
+    /// Those that are valid.
+    pub num_valid: usize,
+    /// Least and greatest x and z of these, mm; none where nothing was seen.
+    pub range_mm: Option<ScanRange>,
+}
+
+/// Where the valid points of a profile lie, mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScanRange {
+    /// Least and greatest place across the line.
+    pub x_mm: [f64; 2],
+    /// Least and greatest range.
+    pub z_mm: [f64; 2],
+}
+
+impl ScanLine {
+    /// Looks through a profile.
+    #[must_use]
+    pub fn of(profile: &Profile) -> Self {
+        let widened = |[low, high]: [f64; 2], value: f64| [low.min(value), high.max(value)];
+        let nothing = [f64::INFINITY, f64::NEG_INFINITY];
+        let (num_valid, x_mm, z_mm) = profile
+            .valid_points()
+            .fold((0, nothing, nothing), |(num, xs, zs), (_, x, z)| (num + 1, widened(xs, x), widened(zs, z)));
+        Self { num_points: profile.len(), num_valid, range_mm: (num_valid > 0).then_some(ScanRange { x_mm, z_mm }) }
     }
+}
+
+/// What a capture holds.
+#[derive(Clone, Debug)]
+enum Seen {
+    /// Something of a target that a calibration is computed from, or why not.
+    Target(calibrate::Reading),
+    /// A line over a workpiece.
+    Scan(ScanLine),
 }
 
 #[derive(Clone, Debug)]
 struct MeasuredCapture {
     profile: Option<Arc<Profile>>,
-    reading: calibrate::Reading,
+    seen: Seen,
+}
+
+impl MeasuredCapture {
+    const fn reading(&self) -> Option<&calibrate::Reading> {
+        match &self.seen {
+            Seen::Target(reading) => Some(reading),
+            Seen::Scan(_) => None,
+        }
+    }
 }
 
 /// The readings of one target's captures, enabled or not.
 #[derive(Clone, Debug)]
 struct MeasuredTarget {
-    search: Search,
+    sought: Option<Sought>,
     stations: Vec<Vec<MeasuredCapture>>,
 }
 
@@ -84,13 +120,22 @@ pub struct Measured {
 }
 
 impl Measured {
-    /// What was found in a capture.
+    /// What was found in a capture; none in one of a scan, see [`Self::scan_line`].
     #[must_use]
     pub fn reading(&self, station_idx: usize, capture_idx: usize) -> Option<&calibrate::Reading> {
-        self.target.reading(station_idx, capture_idx)
+        self.target.capture(station_idx, capture_idx)?.reading()
     }
 
-    /// What was found in a capture of a further target.
+    /// What a profile of a scan holds; none of a target in which something is looked for.
+    #[must_use]
+    pub fn scan_line(&self, station_idx: usize, capture_idx: usize) -> Option<&ScanLine> {
+        match &self.target.capture(station_idx, capture_idx)?.seen {
+            Seen::Scan(line) => Some(line),
+            Seen::Target(_) => None,
+        }
+    }
+
+    /// What was found in a capture of a further target; none in one of a scan.
     #[must_use]
     pub fn further_reading(
         &self,
@@ -98,13 +143,13 @@ impl Measured {
         station_idx: usize,
         capture_idx: usize,
     ) -> Option<&calibrate::Reading> {
-        self.further.get(further_idx)?.reading(station_idx, capture_idx)
+        self.further.get(further_idx)?.capture(station_idx, capture_idx)?.reading()
     }
 }
 
 impl MeasuredTarget {
-    fn reading(&self, station_idx: usize, capture_idx: usize) -> Option<&calibrate::Reading> {
-        self.stations.get(station_idx)?.get(capture_idx).map(|capture| &capture.reading)
+    fn capture(&self, station_idx: usize, capture_idx: usize) -> Option<&MeasuredCapture> {
+        self.stations.get(station_idx)?.get(capture_idx)
     }
 }
 
@@ -143,8 +188,8 @@ fn measure_target(
     previous: Option<&MeasuredTarget>,
     step: &mut impl FnMut() -> Result<(), Cancelled>,
 ) -> Result<MeasuredTarget, Cancelled> {
-    let search = Search::of(target, profile_std_mm);
-    let previous = previous.filter(|measured| measured.search == search);
+    let sought = sought(target, profile_std_mm);
+    let previous = previous.filter(|measured| measured.sought == sought);
     let mut measured = Vec::with_capacity(stations.len());
     for (station_idx, station) in stations.iter().enumerate() {
         let mut captures = Vec::with_capacity(station.captures.len());
@@ -152,7 +197,7 @@ fn measure_target(
             step()?;
             captures.push(match &capture.reading {
                 Reading::Point(point_in_sensor) => {
-                    MeasuredCapture { profile: None, reading: calibrate::Reading::Point(*point_in_sensor) }
+                    MeasuredCapture { profile: None, seen: Seen::Target(calibrate::Reading::Point(*point_in_sensor)) }
                 }
                 Reading::Profile(profile) => previous
                     .and_then(|measured| measured.stations.get(station_idx)?.get(capture_idx))
@@ -160,13 +205,13 @@ fn measure_target(
                     .cloned()
                     .unwrap_or_else(|| MeasuredCapture {
                         profile: Some(Arc::clone(profile)),
-                        reading: search.reading(profile),
+                        seen: seen(sought.as_ref(), profile),
                     }),
             });
         }
         measured.push(captures);
     }
-    Ok(MeasuredTarget { search, stations: measured })
+    Ok(MeasuredTarget { sought, stations: measured })
 }
 
 /// The problem that the enabled stations of the session's own target pose. For a fixed sensor every pose is inverted, see
@@ -250,18 +295,18 @@ fn posed_station(mount: Mount, idx: usize, station: &Station, readings: &[Measur
         .iter()
         .zip(readings)
         .enumerate()
-        .map(|(capture_idx, (capture, measured_capture))| {
+        .filter_map(|(capture_idx, (capture, measured_capture))| {
             if capture_idx > 0 {
                 travel_mm = travel_mm.zip(capture.step_mm).map(|(travel, step)| travel + step);
             }
-            calibrate::Capture {
+            Some(calibrate::Capture {
                 base_from_flange: match mount {
                     Mount::OnFlange => capture.base_from_flange,
                     Mount::Fixed => Transform::from_rigid(capture.base_from_flange.rigid().inverse()),
                 },
                 commanded_travel_mm: travel_mm,
-                reading: measured_capture.reading.clone(),
-            }
+                reading: measured_capture.reading()?.clone(),
+            })
         })
         .collect();
     calibrate::Station { idx, label: station.label.clone(), side: station.side, captures }

@@ -18,7 +18,9 @@ pub use edit::{Edit, EditRefusal, Place, Row, SetupField};
 pub use error::SessionError;
 pub use format::{load, parse, save, to_json};
 pub use history::{History, new_gesture};
-pub use measure::{Measured, NotABallSession, NothingToSolve, ball_problem, measure, problem, problem_of};
+pub use measure::{
+    Measured, NotABallSession, NothingToSolve, ScanLine, ScanRange, ball_problem, measure, problem, problem_of, sought,
+};
 pub use model::{
     Capture, Edge, FurtherTarget, Known, Published, Reading, Robot, Sensor, Session, Station, Target, Truth,
     WrittenAngles,

@@ -35,6 +35,13 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     if is_zero { text.trim_start_matches('-').to_owned() } else { text }
 }
 
+/// A value to at most so many decimals, without zeros at its end.
+#[must_use]
+pub fn plain(value: f64, decimals: usize) -> String {
+    let text = fixed(value, decimals);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
 /// The same with its sign always shown.
 #[must_use]
 pub fn signed(value: f64, decimals: usize) -> String {
@@ -58,6 +65,13 @@ mod tests {
         assert_eq!(decimals_for(None), 3);
         assert_eq!(decimals_for(Some(f64::NAN)), 3);
         assert_eq!(value(12.345_67, Some(0.12)), "12.35");
+    }
+
+    #[test]
+    fn zeros_at_the_end_say_nothing() {
+        for (value, expected) in [(100.0, "100"), (0.25, "0.25"), (-0.000_01, "0"), (12.345_678, "12.3457")] {
+            assert_eq!(plain(value, 4), expected);
+        }
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use egui::{Key, KeyboardShortcut, Modifiers};
 
 use crate::app::{Document, Workbench};
+use crate::scene::PartKind;
 use crate::session::{Capture, Reading};
 use crate::text::{
     capture as capture_words, document as document_words, import as import_words, shell as words,
@@ -31,7 +32,7 @@ pub enum Action {
     /// Asks for the folder that a profiler's software saves profiles into.
     ChooseWatchedFolder,
     /// Starts the simulated cell and connects to it.
-    Practise,
+    Practise(Option<PartKind>),
     /// Ends it.
     EndPractice,
     /// Asks for a file and writes the poses as CSV.
@@ -101,7 +102,7 @@ impl Action {
             | Self::AddSession
             | Self::AddFurther
             | Self::ChooseWatchedFolder
-            | Self::Practise
+            | Self::Practise(_)
             | Self::EndPractice
             | Self::ExportPoses
             | Self::ExportProfiles
@@ -125,7 +126,7 @@ impl Action {
             Self::AddSession => import_words::ADD_SESSION.to_owned(),
             Self::AddFurther => verify_words::ADD_TARGET.to_owned(),
             Self::ChooseWatchedFolder => capture_words::FOLDER_TITLE.to_owned(),
-            Self::Practise => capture_words::PRACTISE.to_owned(),
+            Self::Practise(part) => capture_words::practise_on(part).to_owned(),
             Self::EndPractice => capture_words::END_PRACTICE.to_owned(),
             Self::ExportPoses => import_words::EXPORT_POSES.to_owned(),
             Self::ExportProfiles => import_words::EXPORT_PROFILES.to_owned(),
@@ -169,7 +170,7 @@ impl Action {
             Self::Redo => document
                 .is_none_or(|document| document.history.redo_label().is_none())
                 .then_some(words::NOTHING_TO_REDO),
-            Self::Practise => workbench.cell().is_practice.then_some(capture_words::PRACTICE),
+            Self::Practise(_) => workbench.cell().is_practice.then_some(capture_words::PRACTICE),
             Self::EndPractice => (!workbench.cell().is_practice).then_some(capture_words::NO_PRACTICE),
             Self::Open
             | Self::OpenSample(_)

@@ -6,7 +6,6 @@ use crate::app::{CellView, Workbench};
 use crate::calibrate::Verdict;
 use crate::device::LinkState;
 use crate::diagnose::{Severity, verdict_with};
-use crate::session::Target;
 use crate::text::capture as capture_words;
 use crate::text::methods::verdict_mark;
 use crate::text::shell as words;
@@ -185,8 +184,6 @@ fn mark(workbench: &Workbench, selection: &Selection, num_pose_remarks: usize, s
         Step::Arcs | Step::Poses | Step::Compare | Step::Diagnosis if document.session.stations.is_empty() => {
             Mark::None
         }
-        // A workpiece is measured with a calibration: it has no arcs, and nothing to compare.
-        Step::Arcs | Step::Poses | Step::Compare if document.session.target == Target::Workpiece => Mark::None,
         Step::Arcs => counted(super::poses::model::num_refused(&document.session, results)),
         Step::Poses => counted(num_pose_remarks),
         Step::Compare => match results.method(selection.method).map(|result| &result.outcome) {
@@ -200,7 +197,7 @@ fn mark(workbench: &Workbench, selection: &Selection, num_pose_remarks: usize, s
                 }
             }
             Some(Err(_)) => Mark::Bad("✖".to_owned()),
-            None if results.refusal.is_some() => Mark::Bad("✖".to_owned()),
+            // A target that no calibration is computed from has no methods.
             None => Mark::None,
         },
         // Nothing while it is under way: a mark of an earlier diagnosis would be believed.
@@ -221,6 +218,7 @@ mod tests {
 
     use super::*;
     use crate::app::Command;
+    use crate::session::Target;
 
     #[test]
     fn a_session_without_stations_is_no_failure() {

@@ -3,6 +3,7 @@
 use egui::{Align, Align2, Button, Layout, MenuBar, TextStyle, Ui, UiBuilder, containers::menu::MenuButton, vec2};
 
 use crate::app::Workbench;
+use crate::app::cell::PRACTICE_PARTS;
 use crate::session::samples;
 use crate::text::document::READ_ONLY;
 use crate::text::start::sample_lesson;
@@ -67,7 +68,9 @@ fn menus(ui: &mut Ui, workbench: &Workbench, persisted: &mut Persisted, actions:
     MenuButton::new(capture_words::MENU).ui(ui, |ui| {
         item(ui, workbench, Action::GoTo(Step::Capture), actions);
         ui.separator();
-        item(ui, workbench, Action::Practise, actions);
+        for part in PRACTICE_PARTS {
+            item(ui, workbench, Action::Practise(part), actions);
+        }
         item(ui, workbench, Action::EndPractice, actions);
     });
     MenuButton::new(words::VIEW).ui(ui, |ui| {

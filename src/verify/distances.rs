@@ -1,9 +1,8 @@
 //! Distances of a plate's points to the lines and the plane fitted to them (Chen et al. 2023, Figs. 3 and 4).
 
-use nalgebra::SymmetricEigen;
-
 use crate::calibrate::{Edge, PlateProblem};
-use crate::geometry::{Flange, Mat3, Sensor, Transform, Vec3};
+use crate::geometry::{Flange, Scatter, Sensor, Transform, Vec3};
+use crate::scan::Plane;
 
 use super::{Figures, NotEvaluated};
 
@@ -19,21 +18,15 @@ pub struct Line {
     pub direction: Vec3,
 }
 
-/// A plane, mm.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plane {
-    /// A point on it: the centroid of what it was fitted to.
-    pub point_mm: Vec3,
-    /// Its normal, of length 1.
-    pub normal: Vec3,
-}
-
 impl Line {
-    /// The line with the least sum of squared distances; through all of them if they are alike.
+    /// The line with the least sum of squared distances.
     #[must_use]
     pub fn through(points: &[Vec3]) -> Self {
-        let (point_mm, spread) = spread(points);
-        Self { point_mm, direction: spread.eigenvectors.column(spread.eigenvalues.imax()).into_owned() }
+        let scatter = Scatter::of(points.iter().copied());
+        scatter.map_or(Self { point_mm: Vec3::zeros(), direction: Vec3::x() }, |scatter| Self {
+            point_mm: scatter.centroid_mm,
+            direction: scatter.widest,
+        })
     }
 
     /// From the nearest point of the line to a point, mm.
@@ -58,29 +51,6 @@ impl Line {
     pub fn angle_rad(&self, other: &Self) -> f64 {
         self.direction.cross(&other.direction).norm().atan2(self.direction.dot(&other.direction).abs())
     }
-}
-
-impl Plane {
-    /// The plane with the least sum of squared distances.
-    #[must_use]
-    pub fn through(points: &[Vec3]) -> Self {
-        let (point_mm, spread) = spread(points);
-        Self { point_mm, normal: spread.eigenvectors.column(spread.eigenvalues.imin()).into_owned() }
-    }
-
-    /// Signed distance of a point, mm.
-    #[must_use]
-    pub fn offset_mm(&self, point_mm: Vec3) -> f64 {
-        self.normal.dot(&(point_mm - self.point_mm))
-    }
-}
-
-/// Centroid, and the eigenvectors of the scatter about it.
-fn spread(points: &[Vec3]) -> (Vec3, SymmetricEigen<f64, nalgebra::Const<3>>) {
-    #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 points")]
-    let centroid = points.iter().sum::<Vec3>() / points.len().max(1) as f64;
-    let scatter = points.iter().map(|point| point - centroid).map(|offset| offset * offset.transpose()).sum::<Mat3>();
-    (centroid, scatter.symmetric_eigen())
 }
 
 /// A point on an edge, through a calibration.
@@ -111,6 +81,8 @@ pub struct Distances {
     pub lines: [Line; 2],
     /// The plane of all points.
     pub plane: Plane,
+    /// The midst of all points, in the base, mm.
+    pub centroid_mm: Vec3,
     /// Distances of the points from the line of their edge (Fig. 3).
     pub to_line: Figures,
     /// Distances of the points from the plane (Fig. 4).
@@ -143,11 +115,13 @@ pub fn distances(
     let on_q = of_edge(Edge::Q)?;
     let lines = [Line::through(&all), Line::through(&on_q)];
     all.extend(on_q);
-    let plane = Plane::through(&all);
+    let (centroid_mm, normal) = Scatter::of(all.iter().copied())
+        .map_or((Vec3::zeros(), Vec3::z()), |scatter| (scatter.centroid_mm, scatter.narrowest));
+    let plane = Plane::through(centroid_mm, normal);
     for point in &mut points {
         let line = &lines[usize::from(point.edge == Edge::Q)];
         point.to_line_mm = line.offset_mm(point.point_in_base_mm).norm();
-        point.to_plane_mm = plane.offset_mm(point.point_in_base_mm).abs();
+        point.to_plane_mm = plane.distance_mm(point.point_in_base_mm).abs();
     }
     let figures = |distance: fn(&EdgePoint) -> f64| Figures::of(&points.iter().map(distance).collect::<Vec<_>>());
     Ok(Distances {
@@ -158,6 +132,7 @@ pub fn distances(
         points,
         lines,
         plane,
+        centroid_mm,
     })
 }
 

@@ -14,7 +14,7 @@ pub mod stability;
 pub mod study;
 
 pub use cross_target::{Evaluation, NotEvaluated, Seen, StationError, evaluate};
-pub use distances::{Distances, EdgePoint, Line, Plane};
+pub use distances::{Distances, EdgePoint, Line};
 pub use figures::{Figures, Histogram};
 pub use matrix_check::{GivenMatrix, MatrixCheck, MatrixDifference, Suspect};
 pub use matrix_text::{MatrixRefusal, parse_matrix};

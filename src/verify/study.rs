@@ -91,6 +91,8 @@ pub struct TargetEvidence {
     pub further_idx: Option<usize>,
     /// Its data.
     pub problem: Problem,
+    /// One entry a method that was run on it.
+    pub results: Vec<MethodResult>,
     /// One entry a calibration, in the order of [`Verification::calibrations`].
     pub rows: Vec<Result<Evaluation, NotEvaluated>>,
 }
@@ -234,6 +236,7 @@ pub fn verify(
             name: target.name,
             further_idx: target.further_idx,
             problem: target.problem,
+            results: target.results,
             rows,
         });
     }

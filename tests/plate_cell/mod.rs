@@ -1,15 +1,16 @@
 //! A robot that looks at the two edges of a plate: problems with a known truth, for the tests and the bench of the plate's
-//! methods.
+//! methods; and the bound below which no unbiased method can err on them.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use handeye::calibrate::plate::points::{EdgePoint, NUM_UNKNOWNS, PlateState};
 use handeye::calibrate::{
     BallProblem, Capture, Edge, Mount, Noise, PlateProblem, PlateStation, Reading, SideChoice, Station,
 };
-use handeye::geometry::so3::exp;
-use handeye::geometry::{Flange, Rigid, Sensor, Transform, Vec3};
+use handeye::geometry::so3::{exp, hat};
+use handeye::geometry::{Flange, Mat3, Rigid, Sensor, Transform, Vec3};
 use handeye::scene::random::Random;
-use nalgebra::UnitQuaternion;
+use nalgebra::{Matrix2, UnitQuaternion};
 
 /// Length of an edge, mm.
 const EDGE_MM: f64 = 200.0;
@@ -208,6 +209,39 @@ pub fn simulated_tip_with(cell: &Cell, flange_from_sensor: Rigid, seed: u64) -> 
         reference_distance_mm: Some(RANGE_MM),
         stations,
     }
+}
+
+/// The least covariance (mm²) of the sensor's place that an unbiased method can have on a problem (Cramér–Rao): from the
+/// noise as it is simulated, at the truth.
+///
+/// # Panics
+/// If the points leave something open.
+#[must_use]
+pub fn bound_mm2(cell: &Cell, simulated: &Simulated) -> Mat3 {
+    let state =
+        PlateState { flange_from_sensor: simulated.flange_from_sensor, base_from_plate: simulated.base_from_plate };
+    let mut information = nalgebra::SMatrix::<f64, NUM_UNKNOWNS, NUM_UNKNOWNS>::zeros();
+    for station in &simulated.problem.stations {
+        let capture = &station.station.captures[0];
+        let point = EdgePoint {
+            station: 0,
+            edge: station.edge,
+            base_from_flange: *capture.base_from_flange.rigid(),
+            point_in_sensor: capture.reading.point_in_sensor_mm().expect("a point"),
+            information: Matrix2::identity(),
+        };
+        let lever = hat(point.in_base(&state.flange_from_sensor) - point.base_from_flange.translation.vector);
+        let rotation = point.base_from_sensor(&state.flange_from_sensor);
+        let in_plane = Mat3::from_diagonal(&Vec3::new(1.0, 0.0, 1.0)) * cell.point_std_mm.powi(2);
+        let covariance = rotation * in_plane * rotation.transpose()
+            + Mat3::identity() * cell.position_std_mm.powi(2)
+            + lever * lever.transpose() * cell.orientation_std_deg.to_radians().powi(2);
+        let across = state.across_in_base(point.edge);
+        let weight = (across * covariance * across.transpose()).try_inverse().expect("some noise");
+        let by_unknowns = state.by_unknowns(&point);
+        information += by_unknowns.transpose() * weight * by_unknowns;
+    }
+    information.try_inverse().expect("nothing open").fixed_view::<3, 3>(3, 3).into_owned()
 }
 
 /// How far a calibration is from the truth: of the translation, mm, and of the rotation, degrees.

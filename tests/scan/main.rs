@@ -149,6 +149,82 @@ fn pitch_and_height_of_teeth_are_recovered() {
     }
 }
 
+/// Teeth with flat crests and roots: widths of crest, flank and root, mm.
+fn flat_teeth(crest: f64, flank: f64, root: f64, height: f64) -> Vec<Surface> {
+    let ridge = Vec3::y() * 40.0;
+    let pitch = crest + root + 2.0 * flank;
+    (0..5)
+        .flat_map(|tooth| {
+            let start = f64::from(tooth) * pitch;
+            let corners =
+                [[0.0, 0.0], [root, 0.0], [root + flank, height], [root + flank + crest, height], [pitch, 0.0]];
+            let at = move |[place, up]: [f64; 2]| Vec3::new(start + place, 0.0, up);
+            let sides: Vec<Surface> =
+                corners.windows(2).map(|pair| rectangle(at(pair[0]), at(pair[1]) - at(pair[0]), ridge)).collect();
+            sides
+        })
+        .collect()
+}
+
+#[test]
+fn teeth_that_few_profiles_meet_are_measured() {
+    // A profile every 2 mm along the ridges: one or two a flank. Upright sensors see both flanks, tilted ones hide one, and
+    // upright walls are seen by nobody.
+    let checks: [(&str, [f64; 2], &[f64], f64); 4] = [
+        ("from above", [4.0, 4.0], &[0.0, 0.0], 0.15),
+        ("from both sides", [4.0, 4.0], &[0.5, -0.5], 0.15),
+        ("one side in the shadow", [4.0, 4.0], &[0.5, 0.5], 0.2),
+        // The gap between two profiles tells no more.
+        ("upright walls", [8.0, 0.0], &[0.0, 0.05], 2.0),
+    ];
+    for (name, [crest, flank], tilts, within_mm) in checks {
+        for seed in 1..=3 {
+            let surfaces = flat_teeth(crest, flank, 15.0 - crest - 2.0 * flank, 10.0);
+            let captures: Vec<_> = (0_u32..)
+                .zip(tilts)
+                .flat_map(|(number, tilt)| {
+                    let from = Vec3::new(-2.0 + 0.8 * f64::from(number), 20.0, 5.0);
+                    let path = Path::over(from, from + Vec3::x() * 78.0, Vec3::new(*tilt, 0.0, -1.0), Vec3::y());
+                    scan(
+                        &surfaces,
+                        &Path { width: 36.0, num_profiles: 40, num_points: 150, ..path },
+                        10 * seed + u64::from(number),
+                    )
+                })
+                .collect();
+            let cloud = Cloud::from_scan(&captures, &flange_from_sensor()).expect("points");
+            let found = measure_teeth(&cloud, &PointSet::all(&cloud)).unwrap_or_else(|error| panic!("{name}: {error}"));
+            assert!((4..=5).contains(&found.teeth.len()), "{name}, {seed}: {found:#?}");
+            assert!(found.along.x.abs() > 0.999 && found.ridge.y.abs() > 0.999, "{name}, {seed}: {found:?}");
+            for measured in found.pitches() {
+                let off = (measured.value_mm - 15.0).abs();
+                assert!(off < within_mm && off < WITHIN_STD * measured.std_mm + 0.05, "{name}, {seed}: {measured:?}");
+            }
+            assert!(found.heights().count() >= 4, "{name}, {seed}: {found:#?}");
+            for measured in found.heights() {
+                let off = (measured.value_mm - 10.0).abs();
+                assert!(off < 0.15 && off < WITHIN_STD * measured.std_mm + 0.05, "{name}, {seed}: {measured:?}");
+            }
+            assert!(found.teeth.iter().all(|tooth| !tooth.is_sharp), "{name}, {seed}");
+        }
+    }
+}
+
+#[test]
+fn upright_walls_are_found_by_a_line_across_them() {
+    // Nobody sees the walls, but their edges are in every profile.
+    let from = Vec3::new(37.5, 8.0, 5.0);
+    let path = Path::over(from, from + Vec3::y() * 24.0, -Vec3::z(), Vec3::x());
+    let path = Path { width: 80.0, num_profiles: 60, num_points: 800, ..path };
+    let cloud = cloud(&flat_teeth(8.0, 0.0, 7.0, 10.0), &path, 1);
+    let found = measure_teeth(&cloud, &PointSet::all(&cloud)).expect("teeth");
+    // Behind the last crest the part ends without a wall.
+    assert_eq!(found.teeth.len(), 4);
+    // To a point's distance from the next one.
+    assert!(found.pitches().all(|pitch| (pitch.value_mm - 15.0).abs() < 0.1), "{found:#?}");
+    assert!(found.heights().all(|height| (height.value_mm - 10.0).abs() < 0.02), "{found:#?}");
+}
+
 #[test]
 fn diameters_are_recovered() {
     let centre = Vec3::new(400.0, -200.0, 100.0);

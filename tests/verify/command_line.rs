@@ -1,15 +1,16 @@
 //! `handeye verify` as a shell sees it.
 
-use std::fs;
-use std::process::{Command, Output};
+use std::process::Output;
 
 use handeye::scene::PartKind;
-use handeye::session::{self, Session};
+use handeye::session::Session;
 use handeye::simulate::{SimulationOptions, SimulationTarget, simulate};
 use serde_json::Value;
 
+use super::shell::{Files, assert_refused, handeye};
+
 fn verify(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_handeye")).arg("verify").args(args).output().expect("the binary starts")
+    handeye("verify", args)
 }
 
 fn simulated(kind: PartKind, seed: u64) -> Session {
@@ -17,41 +18,9 @@ fn simulated(kind: PartKind, seed: u64) -> Session {
     simulate(&SimulationOptions { seed, has_points: true, ..options })
 }
 
-struct Files {
-    folder: tempfile::TempDir,
-}
-
-impl Files {
-    fn new() -> Self {
-        Self { folder: tempfile::tempdir().expect("a folder") }
-    }
-
-    fn path(&self, name: &str) -> String {
-        self.folder.path().join(name).to_str().expect("UTF-8").to_owned()
-    }
-
-    fn session(&self, name: &str, session: &Session) -> String {
-        let path = self.path(name);
-        session::save(session, path.as_ref()).expect("written");
-        path
-    }
-
-    fn text(&self, name: &str, text: &str) -> String {
-        let path = self.path(name);
-        fs::write(&path, text).expect("written");
-        path
-    }
-}
-
 #[track_caller]
 fn refused(args: &[&str], status: i32, fragments: &[&str]) {
-    let output = verify(args);
-    let line = String::from_utf8(output.stderr).expect("UTF-8");
-    assert_eq!(output.status.code(), Some(status), "{line}");
-    assert_eq!(line.trim_end().lines().count(), 1, "{line}");
-    for fragment in fragments {
-        assert!(line.contains(fragment), "{fragment:?} is not in {line:?}");
-    }
+    assert_refused(&verify(args), status, fragments);
 }
 
 #[test]

@@ -2,9 +2,12 @@
 #![expect(clippy::expect_used, reason = "helpers of tests may fail as tests do")]
 #![expect(clippy::cast_precision_loss, reason = "a handful of points")]
 
+use handeye::app::verification::{SolvedTarget, solved_further, verification};
 use handeye::calibrate::{Edge, Method, Problem, best_available};
 use handeye::geometry::{Flange, Sensor, Transform, Vec3, so3};
+use handeye::scene::PartKind;
 use handeye::session::{self, measure, samples};
+use handeye::simulate::{SimulationOptions, SimulationTarget, simulate};
 use handeye::verify::{
     Evaluation, GivenMatrix, MatrixDifference, MatrixRefusal, Measurement, NotEvaluated, Origin, Stability, TargetCase,
     evaluate, parse_matrix, verify,
@@ -15,6 +18,8 @@ use paper_cell::PaperCell;
 
 mod command_line;
 mod paper_cell;
+#[path = "../shell/mod.rs"]
+mod shell;
 
 /// f64 at half a metre, through a handful of products.
 const EXACT_MM: f64 = 1e-9;
@@ -303,6 +308,30 @@ fn every_calibration_meets_every_target() {
 }
 
 /// Chen et al. 2023: line mean 0.117 mm, plane mean 0.128 mm, 3δ up to 0.421 mm an axis, with their calibration.
+#[test]
+fn further_targets_are_solved_again_only_where_their_data_changed() {
+    let part = |kind| SimulationTarget::Part(kind);
+    let usual = SimulationOptions::of(part(PartKind::Plate));
+    let mut session =
+        simulate(&SimulationOptions { seed: 1, has_points: true, further: vec![part(PartKind::Pin)], ..usual });
+    let verified = |session: &session::Session, known: &[SolvedTarget]| {
+        let measured = measure(session, None, &mut Unwatched).expect("not cancelled");
+        let problem = session::problem(session, &measured).expect("a plate");
+        let results = problem.solve_all(problem.methods(), &mut Unwatched).expect("not cancelled");
+        verification(session, &measured, Some((&problem, &results)), &[], known, &mut Unwatched).expect("not cancelled")
+    };
+    let first = verified(&session, &[]);
+    let mut known = solved_further(&first);
+    assert_eq!(known.len(), 1, "the own target is none of them");
+    assert_eq!(verified(&session, &known).calibrations, first.calibrations);
+    // Results that no method gives: they are taken as they are known, while the own target changes.
+    known[0].results.clear();
+    session.stations[0].enabled = false;
+    assert!(verified(&session, &known).calibrations.len() < first.calibrations.len());
+    session.further[0].stations[0].enabled = false;
+    assert_eq!(verified(&session, &known).calibrations.len(), first.calibrations.len());
+}
+
 #[test]
 fn the_papers_cell_gives_the_papers_order() {
     let mut bundle_is_better = 0;

@@ -165,6 +165,10 @@ impl Workbench {
     fn add_stations(&mut self, imported: &Imported, name: &str) {
         let Some(document) = &self.document else { return };
         let stations = imported.stations.clone();
+        if let Err(refusal) = import::check_edges(&stations, &document.session.target) {
+            self.notify(NoticeKind::Error, refusal.to_string());
+            return;
+        }
         let label = import_label(stations.len(), name);
         let edit = Edit::InsertStations { at: document.session.stations.len(), stations };
         if self.edit_as(&edit, None, label) {

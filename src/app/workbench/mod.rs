@@ -104,6 +104,8 @@ pub struct Workbench {
     readings: Study<Vec<ReadingFit>>,
     bootstrap: Study<Bootstrap>,
     verification: Study<Verification>,
+    /// Whether results wait to be verified until the routine at the cell has ended.
+    verifies_later: bool,
     /// Calibrations from elsewhere, judged along with the session's own.
     given: Vec<Calibration>,
     adding: Slot<Added>,
@@ -141,6 +143,7 @@ impl Workbench {
             readings: Study::default(),
             bootstrap: Study::default(),
             verification: Study::default(),
+            verifies_later: false,
             given: Vec::new(),
             adding: Slot::default(),
             imports: Imports::default(),
@@ -357,6 +360,7 @@ impl Workbench {
         let exported = self.poll_exports() | self.poll_scans();
         // Last, as a run goes on once the results of its last station are there.
         let cell = self.poll_cell();
+        self.verify_what_waited();
         changed || imported || exported || cell
     }
 

@@ -62,6 +62,8 @@ pub enum ScanCommand {
     RenameRegion(usize, String),
     /// Takes a region off the list.
     RemoveRegion(usize),
+    /// Takes back what was done to the list last: regions added, found anew or removed.
+    UndoRegions,
     /// Looks for other shapes.
     Measure(Wanted),
     /// Writes the points to a PLY or CSV file.
@@ -129,8 +131,13 @@ pub struct Scans {
     chosen: Option<(usize, ScanCalibration)>,
     /// Whether an examination of that is under way.
     is_examining: bool,
+    /// The regions before each change to them, the last one at the end.
+    regions_before: Vec<Vec<Region>>,
     last_id: u64,
 }
+
+/// So many changes to the regions can be taken back.
+const MOST_UNDONE: usize = 50;
 
 impl Scans {
     /// The scan on the bench.
@@ -157,6 +164,12 @@ impl Scans {
         self.working.is_running()
     }
 
+    /// Whether a change to the regions can be taken back.
+    #[must_use]
+    pub const fn can_undo_regions(&self) -> bool {
+        !self.regions_before.is_empty()
+    }
+
     /// How far the export is, while there is one.
     #[must_use]
     pub fn export_progress(&self) -> Option<Progress> {
@@ -165,6 +178,17 @@ impl Scans {
 
     pub(super) const fn is_busy(&self) -> bool {
         self.working.is_running() || self.exporting.is_running()
+    }
+
+    /// Other regions for the scan on the bench; what they replace can be had back.
+    fn set_regions(&mut self, regions: Vec<Region>) {
+        let id = self.next_id();
+        if let Some(scan) = &mut self.examined {
+            scan.regions_id = id;
+            self.regions_before.push(std::mem::replace(&mut scan.regions, regions));
+            let num_forgotten = self.regions_before.len().saturating_sub(MOST_UNDONE);
+            self.regions_before.drain(..num_forgotten);
+        }
     }
 
     const fn next_id(&mut self) -> u64 {
@@ -214,10 +238,18 @@ impl Workbench {
                 }
             }
             ScanCommand::RemoveRegion(idx) => {
-                let id = self.scans.next_id();
-                if let Some(scan) = self.scans.examined.as_mut().filter(|scan| idx < scan.regions.len()) {
-                    scan.regions.remove(idx);
-                    scan.regions_id = id;
+                let regions = self.scans.examined.as_ref().map(|scan| scan.regions.clone()).unwrap_or_default();
+                if idx < regions.len() {
+                    let mut regions = regions;
+                    regions.remove(idx);
+                    self.scans.set_regions(regions);
+                }
+            }
+            ScanCommand::UndoRegions => {
+                if let Some(regions) = self.scans.regions_before.pop() {
+                    self.scans.set_regions(regions);
+                    // Taking back is no change that could be taken back.
+                    self.scans.regions_before.pop();
                 }
             }
             ScanCommand::Measure(wanted) => {
@@ -231,7 +263,11 @@ impl Workbench {
             ScanCommand::Cancel => {
                 self.scans.working.cancel();
                 self.scans.exporting.cancel();
-                self.scans.is_examining = false;
+                if std::mem::take(&mut self.scans.is_examining) {
+                    // It is not begun again by itself.
+                    let revision = self.document.as_ref().map_or(0, |document| document.revision);
+                    self.scans.failure = Some(ScanFailure { revision, reason: words::CANCELLED.to_owned() });
+                }
             }
         }
     }
@@ -364,21 +400,19 @@ impl Workbench {
     }
 
     fn take_scan_outcome(&mut self, outcome: Outcome) {
-        let id = self.scans.next_id();
-        let of = |scan: &&mut ExaminedScan, id: u64| scan.id == id;
         match outcome {
             Outcome::Examined(scan) => {
                 self.scans.is_examining = false;
                 self.scans.examined = Some(*scan);
+                self.scans.regions_before.clear();
             }
             Outcome::Regions { id: scan_id, regions } => {
-                if let Some(scan) = self.scans.examined.as_mut().filter(|scan| of(scan, scan_id)) {
-                    scan.regions = regions;
-                    scan.regions_id = id;
+                if self.scans.examined.as_ref().is_some_and(|scan| scan.id == scan_id) {
+                    self.scans.set_regions(regions);
                 }
             }
             Outcome::Shapes { id: scan_id, wanted, shapes } => {
-                if let Some(scan) = self.scans.examined.as_mut().filter(|scan| of(scan, scan_id)) {
+                if let Some(scan) = self.scans.examined.as_mut().filter(|scan| scan.id == scan_id) {
                     scan.wanted = wanted;
                     scan.shapes = shapes;
                 }

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use crate::app::jobs::JobOutcome;
 use crate::app::study::Study;
-use crate::app::verification::{as_further, verification};
-use crate::session::{self, Edit, Session, SessionError};
+use crate::app::verification::{adding_targets_of, solved_further, verification};
+use crate::session::{self, Session, SessionError};
 use crate::text::verify as words;
 use crate::verify::{Calibration, Origin, Verification};
 
@@ -42,11 +42,24 @@ impl Workbench {
         let Some(results) = self.results.clone().filter(|results| self.is_current(results.revision)) else { return };
         let Some(document) = &self.document else { return };
         let session = std::sync::Arc::clone(&document.session);
+        // Each capture of a routine would start over: what is known is verified when it has ended.
+        self.verifies_later = self.cell.is_measuring();
+        if self.verifies_later {
+            return;
+        }
         let given = self.given.clone();
+        let known = self.verification.last().map(|found| solved_further(&found.value)).unwrap_or_default();
         self.verification.start("verify", &self.wake, results.revision, move |watch| {
             let own = results.problem.as_deref().map(|problem| (problem, &*results.methods));
-            verification(&session, &results.measured, own, &given, watch)
+            verification(&session, &results.measured, own, &given, &known, watch)
         });
+    }
+
+    /// Verifies what came while a routine was under way, now that none is.
+    pub(super) fn verify_what_waited(&mut self) {
+        if self.verifies_later && !self.cell.is_measuring() {
+            self.start_verifying();
+        }
     }
 
     pub(super) fn give_calibration(&mut self, calibration: Calibration) {
@@ -87,7 +100,7 @@ impl Workbench {
             Ok(other) if other.mount != document.session.mount => {
                 self.notify(NoticeKind::Error, words::other_mount(&shown(&added.path)));
             }
-            Ok(other) => self.edit(&Edit::AddFurther(Box::new(as_further(other, &file_name))), None),
+            Ok(other) => self.edit(&adding_targets_of(other, &file_name), None),
         }
     }
 }

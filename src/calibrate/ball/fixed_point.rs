@@ -81,14 +81,18 @@ pub(super) fn find(problem: &BallProblem) -> Result<Found<'_>, SolveError> {
     let centres: Vec<Vec3> =
         candidates.iter().zip(&resolved.sides).map(|(candidate, side)| candidate.centre(*side)).collect();
     let start = poses.reduced(&centres).state(resolved.minimum.flange_from_sensor);
-    let observations = CentreObservation::points(&base_from_flange, &centres);
+    let observations = without_copies(CentreObservation::points(&base_from_flange, &centres));
     let minimum = minimise(&observations.iter(), start)?;
     // With a larger ball every section is further from its centre.
     let by_radius = change_by_radius(problem.radius_mm, &minimum.hessian, |radius_mm| {
         let at_radius = sections.iter().map(|section| section.at_radius(radius_mm));
         let centres: Vec<Vec3> =
             at_radius.zip(&resolved.sides).map(|(candidate, side)| candidate.centre(*side)).collect();
-        Ok(Normal::of(CentreObservation::points(&base_from_flange, &centres).iter(), &minimum.state).gradient)
+        let moved = observations
+            .iter()
+            .zip(centres)
+            .map(|(observation, centre)| CentreObservation { centre_in_sensor: centre, ..observation.clone() });
+        Ok(Normal::of(moved.collect::<Vec<_>>().iter(), &minimum.state).gradient)
     })?;
     add_side_warning(&sections, &resolved.cost_ratios, &mut warnings);
     add_blind_warning(&sections, &mut warnings);
@@ -206,16 +210,35 @@ fn add_blind_warning(sections: &[Section<'_>], warnings: &mut Vec<Warning>) {
     }
 }
 
+/// A station that was entered several times weighs as one: copies tell nothing new, and nothing of the scatter.
+fn without_copies(observations: Vec<CentreObservation>) -> Vec<CentreObservation> {
+    let is_copy = |one: &CentreObservation, other: &CentreObservation| {
+        one.base_from_flange == other.base_from_flange && one.centre_in_sensor == other.centre_in_sensor
+    };
+    #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 stations")]
+    let weight = |one: &CentreObservation| {
+        // What is not a number is not even its own copy.
+        1.0 / observations.iter().filter(|other| is_copy(one, other)).count().max(1) as f64
+    };
+    let weights: Vec<f64> = observations.iter().map(weight).collect();
+    observations
+        .into_iter()
+        .zip(weights)
+        .map(|(one, weight)| CentreObservation { information: one.information * weight, ..one })
+        .collect()
+}
+
 /// The scale that unit-weight points set by their own scatter; `None` if nothing is left over.
 pub(super) fn scaled_spread(observations: &[CentreObservation], state: &State) -> Option<Spread> {
     let cost: f64 = observations
         .iter()
         .map(|observation| {
-            (state.ball_in_sensor(&observation.base_from_flange) - observation.centre_in_sensor).norm_squared()
+            let off = state.ball_in_sensor(&observation.base_from_flange) - observation.centre_in_sensor;
+            off.dot(&(observation.information * off))
         })
         .sum();
-    let freedom = (3 * observations.len()).checked_sub(9).filter(|freedom| *freedom > 0)?;
-    #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 stations")]
-    let degrees_of_freedom = freedom as f64;
-    Some(Spread::Scaled { factor: cost / degrees_of_freedom, degrees_of_freedom })
+    // Each counts as three equations by its weight, copies as one together.
+    let equations: f64 = observations.iter().map(|observation| observation.information.trace()).sum();
+    let degrees_of_freedom = (equations - 9.0).round();
+    (degrees_of_freedom > 0.0).then(|| Spread::Scaled { factor: cost / degrees_of_freedom, degrees_of_freedom })
 }

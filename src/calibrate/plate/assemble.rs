@@ -4,7 +4,7 @@ use nalgebra::Vector6;
 
 use crate::calibrate::rotation_start::{PoseGeometry, rotation_span};
 use crate::calibrate::shared_warnings::{refused_captures, rotation_warnings, stands_out};
-use crate::calibrate::uncertainty::{doubt_in_the_noise, of_sensor};
+use crate::calibrate::uncertainty::{doubt_in_the_noise, of_sensor, point_by_sensor};
 use crate::calibrate::{
     Edge, Method, PlateFound, PlatePoint, PlateProblem, PlateReduced, RmsMax, Solution, SolveError, Starts, Warning,
 };
@@ -15,7 +15,7 @@ use super::descent::inverse_of;
 use super::measured::Measured;
 use super::noise::PlateNoise;
 use super::points::{EdgePoint, NUM_UNKNOWNS, PlateState, sensor_block};
-use super::refit::{PlateRefit, published};
+use super::refit::{PlateRefit, covariance_at, published};
 use super::{Candidate, RECOMMENDED_POINTS};
 
 /// Everything that a solution is made from.
@@ -53,38 +53,56 @@ impl Found<'_> {
             points: std::mem::take(&mut self.points),
             state,
         };
-        let left_out = left_out(&reduced);
+        let left_out = reduced.without_each();
+        let left_out_mm: Vec<Option<f64>> = reduced
+            .points
+            .iter()
+            .map(|point| left_out[point.station].map(|refit| refit.state.off_edge(point).norm()))
+            .collect();
         let in_sample: Vec<f64> = reduced.points.iter().map(|point| state.off_edge(point).norm()).collect();
         let poses: Vec<Rigid> = self.measured.iter().map(|measured| measured.point.base_from_flange).collect();
         let span = rotation_span(&poses);
         let converged = self.minimum.converged && (!is_published || self.best.converged);
         let num_iterations = if is_published { self.best.num_iterations } else { self.minimum.num_iterations };
-        self.add_warnings(span, converged, num_iterations, &left_out, &in_sample);
+        self.add_warnings(span, converged, num_iterations, &left_out_mm, &in_sample);
         let reference_point = self.reference_point();
         // Without equations left over, the noise is only what was stated or usual: nothing was seen of it.
-        let uncertainty = (2 * reduced.points.len() > NUM_UNKNOWNS).then(|| {
-            let degrees_of_freedom = self.noise.degrees_of_freedom;
-            of_sensor(
+        let uncertainty = if 2 * reduced.points.len() > NUM_UNKNOWNS {
+            let by_sensor = point_by_sensor(reference_point);
+            let degrees_of_freedom = self.noise.degrees_of_freedom(|noise| {
+                let points = noise.weighed(&self.measured, &found.state);
+                let covariance = sensor_block(&covariance_at(self.method, &points, &found.state)?);
+                Ok((by_sensor * covariance * by_sensor.transpose()).trace())
+            })?;
+            Some(of_sensor(
                 &(sensor_block(&found.covariance) * doubt_in_the_noise(degrees_of_freedom)),
                 degrees_of_freedom,
                 &state.flange_from_sensor,
                 reference_point,
-            )
-        });
+            ))
+        } else {
+            None
+        };
         let points = self
             .measured
             .iter()
             .zip(&reduced.points)
-            .zip(&left_out)
-            .map(|((measured, point), left_out)| PlatePoint {
-                station_idx: measured.station.station.idx,
-                capture_idx: measured.capture_idx,
-                label: measured.station.station.label.clone(),
-                edge: point.edge,
-                point_in_sensor_mm: point.point_in_sensor,
-                point_in_base_mm: point.in_base(&state.flange_from_sensor),
-                off_edge_mm: state.off_edge_in_base(point),
-                leave_one_out_mm: *left_out,
+            .flat_map(|(measured, point)| {
+                let without = left_out[point.station];
+                measured.captures.iter().map(move |(capture_idx, point_in_sensor)| {
+                    let point = EdgePoint { point_in_sensor: *point_in_sensor, ..*point };
+                    PlatePoint {
+                        station: point.station,
+                        station_idx: measured.station.station.idx,
+                        capture_idx: *capture_idx,
+                        label: measured.station.station.label.clone(),
+                        edge: point.edge,
+                        point_in_sensor_mm: *point_in_sensor,
+                        point_in_base_mm: point.in_base(&state.flange_from_sensor),
+                        off_edge_mm: state.off_edge_in_base(&point),
+                        leave_one_out_mm: without.map(|refit| refit.state.off_edge(&point).norm()),
+                    }
+                })
             })
             .collect();
         let rms_max = |distances: &[f64]| RmsMax {
@@ -97,7 +115,7 @@ impl Found<'_> {
             flange_from_sensor: Transform::from_rigid(state.flange_from_sensor),
             target_in_base_mm: state.base_from_plate.translation.vector,
             scatter: rms_max(&in_sample),
-            leave_one_out: left_out.iter().copied().collect::<Option<Vec<f64>>>().map(|errors| rms_max(&errors)),
+            leave_one_out: left_out_mm.iter().copied().collect::<Option<Vec<f64>>>().map(|errors| rms_max(&errors)),
             uncertainty,
             stations: Vec::new(),
             plate: Some(PlateFound { base_from_plate: state.base_from_plate, points, starts: self.starts, reduced }),
@@ -148,10 +166,4 @@ impl Found<'_> {
         }
         self.warnings.extend(refused_captures(self.problem.stations.iter().map(|station| &station.station)));
     }
-}
-
-/// For each point its distance from the edge of the solution made without its station, mm.
-fn left_out(reduced: &PlateReduced) -> Vec<Option<f64>> {
-    let without = reduced.without_each();
-    reduced.points.iter().map(|point| without[point.station].map(|refit| refit.state.off_edge(point).norm())).collect()
 }

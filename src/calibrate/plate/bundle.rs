@@ -63,27 +63,22 @@ pub(super) struct Settled {
 /// # Errors
 /// [`SolveError::Diverged`] if numbers run away.
 pub(super) fn settle(measured: &[Measured<'_>], start: PlateState, noise: PlateNoise) -> Result<Settled, SolveError> {
-    let mut settled = settle_with(measured, start, noise, true)?;
+    let mut settled = settle_with(measured, start, noise)?;
     if let Some(above) = settled.noise.above_stated.filter(super::AboveStated::is_contradicted) {
         // Weights by a noise that the data refute would take chance for knowledge.
-        let noise = settled.noise.contradicted(above.ratio, measured.len());
-        settled = settle_with(measured, settled.minimum.unknowns, noise, false)?;
+        settled = settle_with(measured, settled.minimum.unknowns, settled.noise.reopened())?;
+        settled.noise.above_stated = Some(above);
     }
     Ok(settled)
 }
 
-fn settle_with(
-    measured: &[Measured<'_>],
-    start: PlateState,
-    noise: PlateNoise,
-    is_open: bool,
-) -> Result<Settled, SolveError> {
+fn settle_with(measured: &[Measured<'_>], start: PlateState, noise: PlateNoise) -> Result<Settled, SolveError> {
     let mut noise = noise;
     let mut state = start;
     let mut latest = None;
     for pass in 1..=MAX_PASSES {
-        if is_open && pass <= LAST_NOISE_ESTIMATE {
-            noise.estimate(measured, &state);
+        if pass <= LAST_NOISE_ESTIMATE {
+            noise.estimate(measured, &state)?;
         }
         let points = noise.weighed(measured, &state);
         let mut minimum = minimise(&points, state, |_| 1.0)?;

@@ -11,6 +11,7 @@ pub mod points;
 
 mod assemble;
 mod bundle;
+mod components;
 mod measured;
 mod noise;
 mod refit;

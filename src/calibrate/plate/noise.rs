@@ -1,74 +1,70 @@
 //! What the points of a plate scatter by: the sensor's noise in its plane and the robot's, carried to each point.
+//!
+//! Three components: the position and the orientation of each pose, and the point in the laser plane. What is stated, or
+//! said by an edge's own fit, is taken as it is; the rest begins in the proportions of usual machines and is found from the
+//! data as far as they tell it.
 
-use crate::calibrate::{AboveStated, Mount, NoiseModel, PlateProblem};
+use nalgebra::{Matrix2, Matrix3, Vector3};
+
+use crate::calibrate::{AboveStated, Mount, NoiseModel, PlateProblem, SolveError};
 use crate::geometry::so3::hat;
 use crate::geometry::{Mat3, Rigid, Vec3, stats};
 
+use super::components::{Components, Found, NUM_COMPONENTS, PointModel};
 use super::measured::Measured;
 use super::points::{EdgePoint, NUM_UNKNOWNS, PlateState};
 
-/// A usual robot and a usual sensor, where nothing is stated: their proportion matters, the scale is estimated.
-const USUAL_POSITION_STD_MM: f64 = 0.03;
-const USUAL_ORIENTATION_STD_RAD: f64 = 1e-4;
-const USUAL_POINT_STD_MM: f64 = 0.03;
+/// A usual robot and a usual sensor, where nothing is stated: position, orientation (rad), point; mm.
+const USUAL_STDS: [f64; NUM_COMPONENTS] = [0.03, 1e-4, 0.03];
 /// No robot and no profiler is better than this, mm: it keeps exact data weighable.
 const LEAST_STD_MM: f64 = 1e-4;
-/// The search for the scale ends within this factor of it, or where nothing is left of it.
-const SCALE_WITHIN: f64 = 1e-9;
-const NO_SCALE: f64 = 1e-12;
+/// Step (of a variance's logarithm) over which differences are taken.
+const DIFFERENCE: f64 = 1e-3;
 
-/// A noise of the robot and of the sensor: variances, mm² and rad².
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Variances {
-    position: f64,
-    orientation: f64,
-    /// Of a point in the laser plane along either axis, where its profile does not say it.
-    point: f64,
-    /// Factor on what the profiles say of their points.
-    of_profiles: f64,
-}
-
-/// The noise that the weights stand for: what is known of it, and what is not with its estimated scale.
+/// The noise that the weights stand for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PlateNoise {
-    known: Variances,
-    /// Times `scale`.
-    open: Variances,
-    /// Factor on the unknown part.
-    scale: f64,
+    /// Variances of position, orientation and point as stated, else of usual machines, mm² and rad².
+    variances: [f64; NUM_COMPONENTS],
+    /// Which of them are to be found.
+    is_open: [bool; NUM_COMPONENTS],
+    /// Whether what the profiles say of their points is to be found as well: the data refute it.
+    are_profiles_open: bool,
+    /// Logarithms of the factors on what is open.
+    log_factors: Vector3<f64>,
+    /// Their covariance.
+    covariance: Matrix3<f64>,
     is_stated: bool,
     mount: Mount,
-    /// Equations left over that the scale was found from, infinite where nothing had to be found.
-    pub degrees_of_freedom: f64,
     /// The scatter against what is stated.
     pub above_stated: Option<AboveStated>,
 }
 
 impl PlateNoise {
-    /// What the problem says of it; the rest at the scale of usual machines.
+    /// What the problem says of it; the rest as of usual machines.
     pub fn of(problem: &PlateProblem) -> Self {
-        let (position, orientation) = (problem.noise.position_std_mm, problem.noise.orientation_std_rad);
-        let point = problem.profile_std_mm;
-        let squared = |std: Option<f64>| std.map_or(0.0, |std| std * std);
-        let usual = |std: Option<f64>, usual: f64| if std.is_some() { 0.0 } else { usual * usual };
+        let stated = [problem.noise.position_std_mm, problem.noise.orientation_std_rad, problem.profile_std_mm];
+        let std = |idx: usize| stated[idx].unwrap_or(USUAL_STDS[idx]);
         Self {
-            known: Variances {
-                position: squared(position),
-                orientation: squared(orientation),
-                point: squared(point),
-                of_profiles: 1.0,
-            },
-            open: Variances {
-                position: usual(position, USUAL_POSITION_STD_MM),
-                orientation: usual(orientation, USUAL_ORIENTATION_STD_RAD),
-                point: usual(point, USUAL_POINT_STD_MM),
-                of_profiles: 0.0,
-            },
-            scale: 1.0,
-            is_stated: position.is_some() && orientation.is_some(),
+            variances: [0, 1, 2].map(|idx| std(idx) * std(idx)),
+            is_open: stated.map(|std| std.is_none()),
+            are_profiles_open: false,
+            log_factors: Vector3::zeros(),
+            covariance: Matrix3::zeros(),
+            is_stated: stated[0].is_some() && stated[1].is_some(),
             mount: problem.mount,
-            degrees_of_freedom: f64::INFINITY,
             above_stated: None,
+        }
+    }
+
+    /// The same with all of it to be found, in the proportions that were stated.
+    pub fn reopened(&self) -> Self {
+        let usual = USUAL_STDS.map(|std| std * std);
+        Self {
+            variances: [0, 1, 2].map(|idx| if self.variances[idx] > 0.0 { self.variances[idx] } else { usual[idx] }),
+            is_open: [true; NUM_COMPONENTS],
+            are_profiles_open: true,
+            ..*self
         }
     }
 
@@ -76,92 +72,71 @@ impl PlateNoise {
     pub fn weighed(&self, measured: &[Measured], state: &PlateState) -> Vec<EdgePoint> {
         measured
             .iter()
-            .map(|point| {
-                let across = state.across_in_base(point.point.edge);
-                let covariance =
-                    across * self.covariance_in_base(point, &state.flange_from_sensor) * across.transpose();
+            .map(|measured| {
+                let covariance = self.model_of(measured, state).covariance(&self.log_factors);
                 let information = covariance.try_inverse().unwrap_or_default();
-                EdgePoint { information, ..point.point }
+                EdgePoint { information, ..measured.point }
             })
             .collect()
     }
 
-    /// Covariance of a point in the base, mm².
+    /// Finds what is not known from the residuals, and compares them with what is stated otherwise. `state` is near a
+    /// minimum.
     ///
-    /// Points taken at one reported pose share its error. With that error's variance times their number each, they weigh
-    /// together as their mean does.
-    pub fn covariance_in_base(&self, point: &Measured, flange_from_sensor: &Rigid) -> Mat3 {
-        let known = covariance(&self.known, point, flange_from_sensor, self.mount);
-        let least = Mat3::identity() * (LEAST_STD_MM * LEAST_STD_MM);
-        known + least + covariance(&self.open, point, flange_from_sensor, self.mount) * self.scale
-    }
-
-    /// Finds the scale of what is not known so that the residuals are as large as they should be, and compares them with
-    /// what is stated otherwise. `state` is a minimum.
-    pub fn estimate(&mut self, measured: &[Measured], state: &PlateState) {
+    /// # Errors
+    /// [`SolveError::Undetermined`] if the points leave an unknown free.
+    pub fn estimate(&mut self, measured: &[Measured], state: &PlateState) -> Result<(), SolveError> {
         let Some(freedom) = (2 * measured.len()).checked_sub(NUM_UNKNOWNS).filter(|freedom| *freedom > 0) else {
-            return;
+            return Ok(());
         };
-        #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 points")]
-        let freedom = freedom as f64;
-        let chi_square = |noise: &Self| -> f64 {
-            let points = noise.weighed(measured, state);
-            points
-                .iter()
-                .map(|point| state.off_edge(point))
-                .zip(&points)
-                .map(|(off, point)| off.dot(&(point.information * off)))
-                .sum()
-        };
-        if !self.has_open(measured) {
-            let chi_square = chi_square(self);
-            self.above_stated = Some(AboveStated {
-                ratio: (chi_square / freedom).sqrt(),
-                p_value: stats::chi_squared_p_value(chi_square, freedom),
-            });
-            return;
+        let components = Components::new(measured.iter().map(|measured| self.model_of(measured, state)).collect());
+        if components.is_any_open() {
+            let Found { log_factors, covariance } = components.fit(self.log_factors)?;
+            (self.log_factors, self.covariance) = (log_factors, covariance);
+        } else {
+            #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 points")]
+            let freedom = freedom as f64;
+            let chi_square = components.chi_square(&self.log_factors);
+            let p_value = stats::chi_squared_p_value(chi_square, freedom);
+            self.above_stated = Some(AboveStated { ratio: (chi_square / freedom).sqrt(), p_value });
         }
-        // χ² falls as the scale grows; it has to be what the equations left over let one expect.
-        let at = |scale: f64| chi_square(&Self { scale, ..*self });
-        let (mut low, mut high) = (0.0_f64, 1.0_f64);
-        while at(high) > freedom && high < NO_SCALE.recip() {
-            low = high;
-            high *= 10.0;
-        }
-        if low < high * 0.01 {
-            low = high;
-            while at(low) < freedom && low > NO_SCALE {
-                high = low;
-                low *= 0.1;
-            }
-        }
-        while high / low > 1.0 + SCALE_WITHIN {
-            let middle = (low * high).sqrt();
-            if at(middle) > freedom { low = middle } else { high = middle }
-        }
-        self.scale = high;
-        let part = self.open_part(measured, &state.flange_from_sensor);
-        self.degrees_of_freedom = freedom / (part * part).max(f64::MIN_POSITIVE);
+        Ok(())
     }
 
-    /// All of it so many times as large.
-    pub fn contradicted(&self, ratio: f64, num_points: usize) -> Self {
-        let times = |variances: Variances, factor: f64| Variances {
-            position: variances.position * factor,
-            orientation: variances.orientation * factor,
-            point: variances.point * factor,
-            of_profiles: variances.of_profiles * factor,
-        };
-        #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 points")]
-        let degrees_of_freedom = (2 * num_points).saturating_sub(NUM_UNKNOWNS) as f64;
-        Self { known: times(self.known, ratio * ratio), degrees_of_freedom, ..*self }
+    /// Degrees of freedom (Satterthwaite's) of a variance that follows this noise.
+    ///
+    /// # Errors
+    /// Those of `variance_by`.
+    pub fn degrees_of_freedom(
+        &self,
+        variance_by: impl Fn(&Self) -> Result<f64, SolveError>,
+    ) -> Result<f64, SolveError> {
+        if self.covariance == Matrix3::zeros() {
+            return Ok(f64::INFINITY);
+        }
+        let mut slope = Vector3::zeros();
+        for idx in 0..NUM_COMPONENTS {
+            let at = |step: f64| {
+                let mut noise = *self;
+                noise.log_factors[idx] += step;
+                variance_by(&noise)
+            };
+            slope[idx] = (at(DIFFERENCE)? - at(-DIFFERENCE)?) / (2.0 * DIFFERENCE);
+        }
+        let variance = variance_by(self)?;
+        let spread = slope.dot(&(self.covariance * slope));
+        Ok(if spread > 0.0 { 2.0 * variance * variance / spread } else { f64::INFINITY })
     }
 
     /// For the reader.
     pub fn model(&self) -> NoiseModel {
+        let std = |idx: usize| {
+            let factor = if self.is_open[idx] { self.log_factors[idx].exp() } else { 1.0 };
+            (self.variances[idx] * factor).sqrt()
+        };
         NoiseModel {
-            position_std_mm: (self.known.position + self.open.position * self.scale).sqrt(),
-            orientation_std_rad: (self.known.orientation + self.open.orientation * self.scale).sqrt(),
+            position_std_mm: std(0),
+            orientation_std_rad: std(1),
             station_position_std_mm: 0.0,
             station_orientation_std_rad: 0.0,
             is_stated: self.is_stated,
@@ -169,56 +144,50 @@ impl PlateNoise {
         }
     }
 
-    fn has_open(&self, measured: &[Measured]) -> bool {
-        let open = &self.open;
-        open.position > 0.0
-            || open.orientation > 0.0
-            || (open.point > 0.0 && measured.iter().any(|point| point.covariance_mm2.is_none()))
-    }
-
-    /// The part of the points' variance that was estimated, in the mean.
-    fn open_part(&self, measured: &[Measured], flange_from_sensor: &Rigid) -> f64 {
-        #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 points")]
-        let scale = 1.0 / measured.len() as f64;
-        measured
-            .iter()
-            .map(|point| {
-                let open = covariance(&self.open, point, flange_from_sensor, self.mount).trace() * self.scale;
-                let total = self.covariance_in_base(point, flange_from_sensor).trace();
-                if total > 0.0 { open / total } else { 1.0 }
-            })
-            .sum::<f64>()
-            * scale
+    /// What a point says and by what it may be off, across its edge.
+    ///
+    /// Points taken at one reported pose share its error. With that error's variance times their number each, they weigh
+    /// together as their mean does.
+    fn model_of(&self, measured: &Measured, state: &PlateState) -> PointModel {
+        let point = &measured.point;
+        let across = state.across_in_base(point.edge);
+        let of_sensor = across * point.base_from_sensor(&state.flange_from_sensor);
+        let in_base = point.in_base(&state.flange_from_sensor);
+        let lever = across * lever(in_base, &point.base_from_flange, self.mount);
+        let in_plane = measured
+            .covariance_mm2
+            .unwrap_or_else(|| Matrix2::identity() * (self.variances[2] / measured.num_readings));
+        let in_sensor =
+            Mat3::new(in_plane[(0, 0)], 0.0, in_plane[(0, 1)], 0.0, 0.0, 0.0, in_plane[(1, 0)], 0.0, in_plane[(1, 1)]);
+        let parts = [
+            Matrix2::identity() * (self.variances[0] * measured.num_at_pose),
+            lever * lever.transpose() * (self.variances[1] * measured.num_at_pose),
+            of_sensor * in_sensor * of_sensor.transpose(),
+        ];
+        let is_point_open = if measured.covariance_mm2.is_some() { self.are_profiles_open } else { self.is_open[2] };
+        let is_open = [self.is_open[0], self.is_open[1], is_point_open];
+        let mut known = Matrix2::identity() * (LEAST_STD_MM * LEAST_STD_MM);
+        let mut open = [Matrix2::zeros(); NUM_COMPONENTS];
+        for ((part, is_open), open) in parts.into_iter().zip(is_open).zip(&mut open) {
+            *(if is_open { open } else { &mut known }) += part;
+        }
+        PointModel { off_edge: state.off_edge(point), by_unknowns: state.by_unknowns(point), known, open }
     }
 }
 
-fn covariance(variances: &Variances, point: &Measured, flange_from_sensor: &Rigid, mount: Mount) -> Mat3 {
-    let rotation = point.point.base_from_sensor(flange_from_sensor);
-    let in_plane = point.covariance_mm2.map_or_else(
-        || Mat3::from_diagonal(&[variances.point, 0.0, variances.point].into()),
-        |found| {
-            let mut covariance = Mat3::zeros();
-            for (row, from_row) in [(0, 0), (2, 1)] {
-                for (column, from_column) in [(0, 0), (2, 1)] {
-                    covariance[(row, column)] = found[(from_row, from_column)] * variances.of_profiles;
-                }
-            }
-            covariance
-        },
-    );
-    let in_base = point.point.in_base(flange_from_sensor);
-    let of_pose = of_pose(variances.position, variances.orientation, in_base, &point.point.base_from_flange, mount);
-    rotation * in_plane * rotation.transpose() + of_pose * point.num_at_pose
+/// How a point in the base follows a turn of the pose, up to the sign.
+fn lever(in_base: Vec3, base_from_flange: &Rigid, mount: Mount) -> Mat3 {
+    hat(match mount {
+        // An error of the flange's orientation turns what the sensor sees about the flange.
+        Mount::OnFlange => in_base - base_from_flange.translation.vector,
+        // The poses are inverted: what is called base here is the flange, and turns about its own origin.
+        Mount::Fixed => in_base,
+    })
 }
 
 /// Covariance (mm²) of a point in the base by the noise of the robot's pose: variances of its position (mm²) and orientation
 /// (rad²).
 pub(crate) fn of_pose(position: f64, orientation: f64, in_base: Vec3, base_from_flange: &Rigid, mount: Mount) -> Mat3 {
-    let lever = hat(match mount {
-        // An error of the flange's orientation turns what the sensor sees about the flange.
-        Mount::OnFlange => in_base - base_from_flange.translation.vector,
-        // The poses are inverted: what is called base here is the flange, and turns about its own origin.
-        Mount::Fixed => in_base,
-    });
+    let lever = lever(in_base, base_from_flange, mount);
     Mat3::identity() * position + lever * lever.transpose() * orientation
 }

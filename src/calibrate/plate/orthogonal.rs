@@ -129,7 +129,12 @@ pub fn minimise(
     start: &Rigid,
     times: impl Fn(usize) -> f64 + Copy,
 ) -> Result<Descent<6, SensorState>, SolveError> {
-    descend(|state: &SensorState| orthogonality(placed(points, &state.0, times)), SensorState(*start))
+    descend(|state: &SensorState| sums(points, &state.0, times), SensorState(*start))
+}
+
+/// Cost and normal equations at a sensor on the flange.
+pub(super) fn sums(points: &[EdgePoint], flange_from_sensor: &Rigid, times: impl Fn(usize) -> f64) -> Sums<6> {
+    orthogonality(placed(points, flange_from_sensor, times))
 }
 
 /// How the minimum follows the places of the points in the base: its change (rotation, translation) a mm of each, one

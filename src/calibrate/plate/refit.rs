@@ -15,7 +15,7 @@ use super::{bundle, orthogonal};
 pub struct PlateReduced {
     /// The method, which solves again as it solved.
     pub method: Method,
-    /// In the order of [`super::super::PlateFound::points`].
+    /// In the order of stations and poses.
     pub points: Vec<EdgePoint>,
     /// Number of stations that the points are of.
     pub num_stations: usize,
@@ -91,7 +91,6 @@ pub(super) fn published(
 ) -> Result<PlateRefit, SolveError> {
     let found = orthogonal::minimise(points, &start.flange_from_sensor, times)?;
     let flange_from_sensor = found.unknowns.0;
-    let inverse = inverse_of(&found.sums.hessian)?;
     let on_plate = |plate: &PlateOnly| {
         let state = PlateState { flange_from_sensor, base_from_plate: plate.0 };
         let sums = sums_of(points, &state, times);
@@ -103,16 +102,42 @@ pub(super) fn published(
     };
     let plate = descend(on_plate, PlateOnly(start.base_from_plate))?;
     let state = PlateState { flange_from_sensor, base_from_plate: plate.unknowns.0 };
+    Ok(PlateRefit { state, covariance: covariance_of_published(points, &state, times)? })
+}
+
+/// The covariance of a method's minimum, by the information that the points have.
+///
+/// # Errors
+/// [`SolveError::Undetermined`] if a combination of the unknowns is free.
+pub(super) fn covariance_at(
+    method: Method,
+    points: &[EdgePoint],
+    state: &PlateState,
+) -> Result<SMatrix<f64, NUM_UNKNOWNS, NUM_UNKNOWNS>, SolveError> {
+    if method == Method::PlateOrthogonal {
+        return covariance_of_published(points, state, |_| 1.0);
+    }
+    inverse_of(&sums_of(points, state, |_| 1.0).hessian)
+}
+
+fn covariance_of_published(
+    points: &[EdgePoint],
+    state: &PlateState,
+    times: impl Fn(usize) -> f64 + Copy,
+) -> Result<SMatrix<f64, NUM_UNKNOWNS, NUM_UNKNOWNS>, SolveError> {
+    let flange_from_sensor = &state.flange_from_sensor;
+    let inverse = inverse_of(&orthogonal::sums(points, flange_from_sensor, times).hessian)?;
     let mut sensor_covariance = Matrix6::zeros();
-    for (point, change) in points.iter().zip(orthogonal::change_by_points(points, &flange_from_sensor, &inverse, times))
+    for (point, change) in points.iter().zip(orthogonal::change_by_points(points, flange_from_sensor, &inverse, times))
     {
         let across = change * state.across_in_base(point.edge).transpose();
         let covariance = point.information.try_inverse().ok_or(SolveError::Diverged)?;
         sensor_covariance += across * covariance * across.transpose();
     }
     // The plate follows the sensor, and has a covariance of its own besides.
-    let coupling = sums_of(points, &state, times).hessian.fixed_view::<6, 6>(6, 0).into_owned();
-    let of_plate = inverse_of(&plate.sums.hessian)?;
+    let hessian = sums_of(points, state, times).hessian;
+    let coupling = hessian.fixed_view::<6, 6>(6, 0).into_owned();
+    let of_plate = inverse_of(&hessian.fixed_view::<6, 6>(6, 6).into_owned())?;
     let follows = -of_plate * coupling;
     let mut covariance = SMatrix::<f64, NUM_UNKNOWNS, NUM_UNKNOWNS>::zeros();
     let by_plate = follows * sensor_covariance;
@@ -124,5 +149,5 @@ pub(super) fn published(
     ] {
         covariance.fixed_view_mut::<6, 6>(row, column).copy_from(&block);
     }
-    Ok(PlateRefit { state, covariance })
+    Ok(covariance)
 }

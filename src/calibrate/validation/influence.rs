@@ -68,10 +68,9 @@ fn of_plate(plate: &PlateFound, reference_point: Vec3) -> Option<Vec<Influence>>
     let here = workspace_point(&reduced.state.flange_from_sensor, reference_point);
     let of_station = |(station, refit): (usize, Option<PlateRefit>)| {
         let refit = refit?;
-        let own = || reduced.points.iter().zip(&plate.points).filter(|(point, _)| point.station == station);
-        let (_, named) = own().next()?;
+        let named = plate.points.iter().find(|point| point.station == station)?;
         let (mut chi_square, mut freedom) = (0.0, 0.0);
-        for (point, _) in own() {
+        for point in reduced.points.iter().filter(|point| point.station == station) {
             let by_unknowns = refit.state.by_unknowns(point);
             let predicted = by_unknowns * refit.covariance * by_unknowns.transpose();
             let expected = predicted + point.information.try_inverse()?;

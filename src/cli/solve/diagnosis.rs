@@ -59,7 +59,10 @@ fn findings(out: &mut String, session: &Session, examination: &Examination<'_>, 
             .remedy
             .as_ref()
             .map_or_else(|| words::fault_remedy(&first.fault, session), |remedy| words::remedy_label(remedy, session));
-        writeln!(out, "  {}", words::next_step_line(&step)).ok();
+        // Beside a single finding, its remedy has just been said.
+        if findings.len() > 1 || step != words::fault_remedy(&first.fault, session) {
+            writeln!(out, "  {}", words::next_step_line(&step)).ok();
+        }
     }
 }
 

@@ -9,7 +9,7 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use crate::calibrate::validation::{Bootstrap, bootstrap};
-use crate::calibrate::{Method, MethodResult, Problem, best_available};
+use crate::calibrate::{Method, MethodResult, Problem, SolveError, best_available};
 use crate::diagnose::{Diagnosis, diagnose_any};
 use crate::plan::{Limits, Plan, next_stations};
 use crate::report::result_file::{Examination, result_file};
@@ -180,6 +180,9 @@ fn printed(text: &str, session: &Session, results: &[MethodResult], diagnosis: O
     let mut reasons = String::from("nothing could be computed");
     // The fixed point asks for least, so its reason is the one that all of them have.
     let of_first = results.first().and_then(|result| Some((result.method, result.outcome.as_ref().err()?)));
+    if let Some((_, error @ SolveError::OtherTarget { .. })) = of_first {
+        return fail(EXIT_NOTHING_COMPUTED, &format!("{reasons}: {error}"));
+    }
     if let Some((method, error)) = of_first {
         // Writing to a string does not fail.
         write!(reasons, ": {} – {error}", method.id()).ok();

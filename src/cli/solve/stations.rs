@@ -2,32 +2,47 @@
 
 use std::fmt::Write as _;
 
-use crate::calibrate::{Method, PlateFound, Solution, StationSolution};
+use crate::calibrate::{Method, Mount, PlateFound, Solution, StationSolution};
 use crate::geometry::Vec3;
 use crate::report::digits::{fixed, signed};
 
 /// The table. Writing to a string does not fail, hence the `ok()`s.
 pub fn stations(out: &mut String, solution: &Solution) {
+    let frame = target_frame(solution.mount);
     match &solution.plate {
-        Some(plate) => points(out, plate),
-        None if solution.method == Method::FixedPoint => tips(out, &solution.stations),
-        None => balls(out, &solution.stations),
+        Some(plate) => points(out, plate, frame),
+        None if solution.method == Method::FixedPoint => tips(out, &solution.stations, frame),
+        None => balls(out, &solution.stations, frame),
     }
 }
 
-fn balls(out: &mut String, stations: &[StationSolution]) {
-    out.push_str(
-        "  station  side      ball in sensor / mm            ball in base / mm          error from first / mm    left out\n",
-    );
+/// The frame in which the target stands still.
+pub const fn target_frame(mount: Mount) -> &'static str {
+    match mount {
+        Mount::OnFlange => "base",
+        Mount::Fixed => "flange",
+    }
+}
+
+fn balls(out: &mut String, stations: &[StationSolution], frame: &str) {
+    writeln!(
+        out,
+        "  station  side      ball in sensor / mm        {:^29}   error from first / mm    left out",
+        format!("ball in {frame} / mm")
+    )
+    .ok();
     for station in stations {
         writeln!(out, "  {:<8} {:>3} {}", station.label, station.side.symbol(), places(station)).ok();
     }
 }
 
-fn tips(out: &mut String, stations: &[StationSolution]) {
-    out.push_str(
-        "  station       tip in sensor / mm             tip in base / mm           error from first / mm    left out\n",
-    );
+fn tips(out: &mut String, stations: &[StationSolution], frame: &str) {
+    writeln!(
+        out,
+        "  station       tip in sensor / mm         {:^29}    error from first / mm    left out",
+        format!("tip in {frame} / mm")
+    )
+    .ok();
     for station in stations {
         writeln!(out, "  {:<8} {}", station.label, places(station)).ok();
     }
@@ -46,12 +61,12 @@ fn places(station: &StationSolution) -> String {
     )
 }
 
-fn points(out: &mut String, plate: &PlateFound) {
+fn points(out: &mut String, plate: &PlateFound, frame: &str) {
     let corner = plate.base_from_plate.translation.vector;
     let starts = plate.starts;
     writeln!(
         out,
-        "  corner of the plate in base: {}, {}, {} mm · {} of {} starts led here",
+        "  corner of the plate in {frame}: {}, {}, {} mm · {} of {} starts led here",
         fixed(corner.x, 3),
         fixed(corner.y, 3),
         fixed(corner.z, 3),
@@ -59,9 +74,12 @@ fn points(out: &mut String, plate: &PlateFound) {
         starts.num_tried
     )
     .ok();
-    out.push_str(
-        "  station  edge     point in sensor / mm           point in base / mm         off the edge / mm        left out\n",
-    );
+    writeln!(
+        out,
+        "  station  edge     point in sensor / mm        {:^29}    off the edge / mm        left out",
+        format!("point in {frame} / mm")
+    )
+    .ok();
     for point in &plate.points {
         let off = point.off_edge_mm;
         writeln!(

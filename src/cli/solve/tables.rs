@@ -8,6 +8,7 @@ use crate::diagnose::{Diagnosis, verdict_with};
 use crate::report::digits::{decimals_for, fixed, signed};
 use crate::session::{Session, Target};
 use crate::text;
+use crate::text::conventions::not_known_apart;
 
 use super::stations::stations;
 
@@ -30,6 +31,9 @@ pub fn tables(session: &Session, results: &[MethodResult], diagnosis: Option<&Di
     if let Some(solution) = best_available(results) {
         writeln!(out, "{}", text::answer_head(solution.method)).ok();
         verdict_and_calibration(&mut out, session, solution, diagnosis);
+        if !session.further.is_empty() {
+            writeln!(out, "  {}", text::cli::further_line(&session.further)).ok();
+        }
         out.push('\n');
     }
     overview(&mut out, session, results);
@@ -72,10 +76,13 @@ fn overview(out: &mut String, session: &Session, results: &[MethodResult]) {
         let figure = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| fixed(value, 3));
         let truth = session.truth.as_ref().map_or_else(String::new, |truth| {
             let distance = distance_from_truth(solution, truth);
+            let known = solution.uncertainty.as_ref();
+            // What an error is worth saying of, the uncertainty says.
+            let rotation_std_deg = known.map(|known| known.rotation_covariance().trace().max(0.0).sqrt().to_degrees());
             format!(
                 "   {} mm, {}°",
-                fixed(distance.workspace_point_mm, 3),
-                fixed(distance.rotation_rad.to_degrees(), 4)
+                text::digits::value(distance.workspace_point_mm, known.map(|known| known.workspace_point_std_mm)),
+                text::digits::value(distance.rotation_rad.to_degrees(), rotation_std_deg)
             )
         });
         writeln!(
@@ -167,4 +174,8 @@ fn calibration(out: &mut String, session: &Session, solution: &Solution) {
         out.push_str(if axis < 2 { ", " } else { " °" });
     }
     writeln!(out, " ({})", convention.label).ok();
+    let remark = uncertainty.and_then(|known| not_known_apart(convention, &rotation, &known.rotation_covariance()));
+    if let Some(remark) = remark {
+        writeln!(out, "  {:>width$}  {remark}", "", width = name.len()).ok();
+    }
 }

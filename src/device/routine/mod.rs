@@ -12,7 +12,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
 
-use crate::fit::ArcOptions;
+use crate::fit::{ArcOptions, EdgeOptions, Sought};
 use crate::geometry::{Base, Flange, Profile, Transform};
 use crate::watch::Wake;
 
@@ -64,6 +64,11 @@ pub enum RoutineEnd {
     Done,
     /// A search ended; [`SearchEnd::Found`] is success.
     Searched(SearchEnd),
+    /// What was looked for was not found. A profile that was to show it is kept all the same.
+    NothingSeen {
+        /// Why not.
+        reason: String,
+    },
     /// A motion was not sent.
     NotAllowed(MotionRefusal),
     /// The pose before the profile and that after it differ, again and again.
@@ -101,10 +106,12 @@ impl RoutineEnd {
 /// What to measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Measurement {
-    /// One settled profile.
-    Profile,
-    /// The search for the largest arc.
-    LargestArc(SearchSettings),
+    /// One settled profile, in which something is to be found if that is said.
+    Profile(Option<Sought>),
+    /// The search for the largest arc of a ball.
+    LargestArc(SearchSettings, ArcOptions),
+    /// One settled profile of a tip, once it is known where that is.
+    Tip(SearchSettings, EdgeOptions),
 }
 
 /// What a routine is to do.
@@ -116,8 +123,6 @@ pub struct Task {
     pub measurement: Option<Measurement>,
     /// When a capture counts.
     pub settle: SettleSettings,
-    /// The ball, for the search.
-    pub ball: ArcOptions,
     /// The permission to move; without it nothing moves.
     pub arming: Option<Arming>,
 }

@@ -9,9 +9,10 @@ use crate::device::driver::{LinearMove, RobotReport};
 use crate::device::error::DeviceError;
 use crate::device::robot::arrival::check_arrival;
 use crate::device::safety::MotionRefusal;
-use crate::device::search::{Search, SearchNext, SearchSettings, StepSeen};
+use crate::device::search::tip::height_mm;
+use crate::device::search::{Search, SearchNext, SearchSettings, StepSeen, TipNext, TipSearch};
 use crate::device::worker::{RobotClient, SensorClient};
-use crate::fit::extract_arc;
+use crate::fit::{ArcOptions, EdgeOptions, Sought, extract_arc, extract_edge};
 use crate::geometry::{Base, Flange, Transform};
 use crate::watch::Wake;
 
@@ -99,13 +100,9 @@ impl Runner {
         }
         match &self.task.measurement {
             None => Ok(RoutineEnd::Done),
-            Some(Measurement::Profile) => {
-                self.tell(RoutineEvent::Settling);
-                let capture = self.capture(None)?;
-                self.tell(RoutineEvent::Captured(capture));
-                Ok(RoutineEnd::Done)
-            }
-            Some(Measurement::LargestArc(settings)) => self.search(settings),
+            Some(Measurement::Profile(sought)) => self.keep_profile(sought.as_ref()),
+            Some(Measurement::Tip(settings, options)) => self.find_tip(settings, options),
+            Some(Measurement::LargestArc(settings, ball)) => self.search(settings, ball),
         }
     }
 
@@ -116,9 +113,9 @@ impl Runner {
         Ok(check_arrival("Robot", target, &arrived.base_from_flange)?)
     }
 
-    fn search(&self, settings: &SearchSettings) -> Result<RoutineEnd, Break> {
+    fn search(&self, settings: &SearchSettings, ball: &ArcOptions) -> Result<RoutineEnd, Break> {
         let first = self.check_search(settings)?;
-        let mut search = Search::new(settings, self.task.ball.ball_radius_mm);
+        let mut search = Search::new(settings, ball.ball_radius_mm);
         let mut previous_mm = None;
         loop {
             let commanded_mm = match search.next() {
@@ -140,13 +137,48 @@ impl Runner {
             previous_mm = Some(commanded_mm);
             self.tell(RoutineEvent::Settling);
             let capture = self.capture(step_mm)?;
-            let radius_and_std_mm = extract_arc(&capture.profile, &self.task.ball)
+            let radius_and_std_mm = extract_arc(&capture.profile, ball)
                 .map(|arc| [arc.circle.radius_mm, arc.std_mm()[2]])
                 .map_err(|refusal| refusal.to_string());
             let travelled_mm = settings.travelled_mm(first.rigid(), capture.base_from_flange.rigid());
             self.tell(RoutineEvent::Captured(capture));
             search.take(StepSeen { travelled_mm, radius_and_std_mm });
             self.tell(RoutineEvent::Searched(Box::new(search.report().clone())));
+        }
+    }
+
+    fn keep_profile(&self, sought: Option<&Sought>) -> Result<RoutineEnd, Break> {
+        self.tell(RoutineEvent::Settling);
+        let capture = self.capture(None)?;
+        let refusal = sought.and_then(|sought| sought.find(&capture.profile).err());
+        self.tell(RoutineEvent::Captured(capture));
+        Ok(refusal.map_or(RoutineEnd::Done, |refusal| RoutineEnd::NothingSeen { reason: refusal.to_string() }))
+    }
+
+    fn find_tip(&self, settings: &SearchSettings, options: &EdgeOptions) -> Result<RoutineEnd, Break> {
+        let first = self.check_search(settings)?;
+        let mut search = TipSearch::new(settings);
+        let speed_mm_s = self.task.arming.map_or(0.0, |arming| arming.limits.search_speed_mm_s);
+        let target = |commanded_mm| Transform::from_rigid(settings.pose_at(first.rigid(), commanded_mm));
+        loop {
+            match search.next() {
+                TipNext::Over(end) => return Ok(RoutineEnd::NothingSeen { reason: end.to_string() }),
+                TipNext::KeepAt(commanded_mm) => {
+                    self.move_to(&target(commanded_mm), speed_mm_s)?;
+                    return self.keep_profile(Some(&Sought::Edge(*options)));
+                }
+                TipNext::LookAt(commanded_mm) => {
+                    // The first look is where the robot stands.
+                    if commanded_mm != 0.0 {
+                        self.move_to(&target(commanded_mm), speed_mm_s)?;
+                    }
+                    self.tell(RoutineEvent::Settling);
+                    let seen = self.capture(None)?;
+                    let travelled_mm = settings.travelled_mm(first.rigid(), seen.base_from_flange.rigid());
+                    let found = extract_edge(&seen.profile, options).ok();
+                    search.take(commanded_mm, travelled_mm, found.and_then(|found| height_mm(&seen.profile, &found)));
+                }
+            }
         }
     }
 

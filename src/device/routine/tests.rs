@@ -16,13 +16,13 @@ const PATIENCE: Duration = Duration::from_secs(30);
 
 fn task(cell: &FakeCell, measurement: Measurement) -> Task {
     let settle = SettleSettings { settle_ms: 1, ..SettleSettings::default() };
-    let ball = ArcOptions { ball_radius_mm: RADIUS_MM, profile_std_mm: None };
     let arming = Arming { base_from_flange: cell.world().pose, limits: MotionLimits::default() };
-    Task { go_to: None, measurement: Some(measurement), settle, ball, arming: Some(arming) }
+    Task { go_to: None, measurement: Some(measurement), settle, arming: Some(arming) }
 }
 
 fn search() -> Measurement {
-    Measurement::LargestArc(SearchSettings::default())
+    let ball = ArcOptions { ball_radius_mm: RADIUS_MM, profile_std_mm: None };
+    Measurement::LargestArc(SearchSettings::default(), ball)
 }
 
 struct Running {
@@ -103,7 +103,7 @@ fn a_search_finds_the_largest_arc_and_tells_each_step() {
 #[test]
 fn a_single_profile_needs_no_permission_to_move() {
     let cell = FakeCell::new(5.0);
-    let task = Task { arming: None, ..task(&cell, Measurement::Profile) };
+    let task = Task { arming: None, ..task(&cell, Measurement::Profile(None)) };
     let (captures, end) = start(&cell, &task, Deadlines::default()).run();
     assert_eq!((captures.len(), end), (1, RoutineEnd::Done));
     assert_eq!(cell.world().num_moves, 0);
@@ -138,7 +138,7 @@ fn nothing_moves_without_permission_or_beyond_the_limits() {
 fn it_goes_there_first_and_says_so_where_it_does_not_arrive() {
     let cell = FakeCell::new(5.0);
     let target = Transform::from_parts(Vec3::new(410.0, 5.0, 200.0), cell.world().pose.rotation());
-    let going = Task { go_to: Some(target), ..task(&cell, Measurement::Profile) };
+    let going = Task { go_to: Some(target), ..task(&cell, Measurement::Profile(None)) };
     let (captures, end) = start(&cell, &going, Deadlines::default()).run();
     assert_eq!(end, RoutineEnd::Done);
     assert_eq!(captures[0].base_from_flange, target);
@@ -187,7 +187,7 @@ fn each_fault_ends_a_search_in_its_name_with_the_captures_kept_and_the_robot_sto
 fn a_controller_that_says_it_moves_is_believed() {
     let cell = FakeCell::new(5.0);
     cell.world().says_it_moves = true;
-    let (captures, end) = start(&cell, &task(&cell, Measurement::Profile), Deadlines::default()).run();
+    let (captures, end) = start(&cell, &task(&cell, Measurement::Profile(None)), Deadlines::default()).run();
     assert_eq!((captures.len(), end), (0, RoutineEnd::NeverStill { moved_mm: None }));
 }
 

@@ -6,6 +6,8 @@
 //! - `trace`: what the captures say, whoever decided on them: the curve, both stops, what does not fit.
 //! - [`machine`]: where to go next. [`replay`]: the same captures played again, without deciding.
 //!
+//! - [`tip`]: the search for a tip, which is its own.
+//!
 //! `docs/search.md` tells it in words, with figures.
 
 mod curve;
@@ -16,6 +18,7 @@ pub mod report;
 pub mod settings;
 #[cfg(test)]
 mod tests;
+pub mod tip;
 mod trace;
 
 pub use end::SearchEnd;
@@ -23,3 +26,4 @@ pub use machine::{Search, SearchNext};
 pub use replay::Replay;
 pub use report::{CurveEstimate, SearchPhase, SearchPoint, SearchReport, StepSeen};
 pub use settings::{DirectionFrame, SearchSettings, SettingsRefusal, StopRule};
+pub use tip::{TipEnd, TipNext, TipSearch};

@@ -4,6 +4,7 @@ use std::f64::consts::FRAC_PI_4;
 
 use nalgebra::Translation3;
 
+use crate::calibrate::Edge;
 use crate::device::setup::RobotKind;
 use crate::geometry::{Rigid, Vec3, so3};
 use crate::scene::PartKind;
@@ -65,6 +66,18 @@ impl Layout {
         let base_from_sensor = chain.base_from_flange(&home) * flange_from_sensor;
         let ball_in_base = (base_from_sensor * nalgebra::Point3::from(ball_in_sensor)).coords;
         Self { chain, home, flange_from_sensor, rough_flange_from_sensor, ball_in_base }
+    }
+
+    /// Where the flange is with the line on an edge of a plate, as far from the corner as at first.
+    #[must_use]
+    pub fn base_from_flange_at_edge(&self, edge: Edge) -> Rigid {
+        let home = self.chain.base_from_flange(&self.home);
+        let along = match edge {
+            Edge::P => Vec3::x(),
+            Edge::Q => Vec3::y(),
+        };
+        let way = self.base_from_part(PartKind::Plate).rotation * ((along - Vec3::x()) * PLATE_AIM_MM);
+        Translation3::from(way) * home
     }
 
     /// Where a part stands in place of the ball: level, and so that the line is on it at the first pose. A plate's edges are

@@ -17,6 +17,7 @@ mod world;
 
 use std::path::PathBuf;
 
+use crate::calibrate::Edge;
 use crate::geometry::{Rigid, Vec3};
 use crate::scene::PartKind;
 
@@ -153,6 +154,18 @@ impl SimCell {
     #[must_use]
     pub fn base_from_flange(&self) -> Rigid {
         self.servers.world().arm().base_from_flange
+    }
+
+    /// Brings the line onto an edge of the plate, as somebody with the pendant would, and says so before it is there.
+    ///
+    /// # Errors
+    /// [`DeviceError::System`] if there is no plate, or the arm does not go.
+    pub fn jog_to_edge(&self, edge: Edge) -> Result<(), DeviceError> {
+        self.servers.world().jog_to_edge(edge).map_err(|reason| DeviceError::System {
+            device: DEVICE,
+            what: format!("jogging to edge {}", edge.symbol()),
+            reason,
+        })
     }
 
     /// One more fault, its counts from now on.

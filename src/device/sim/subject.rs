@@ -1,7 +1,7 @@
 //! What stands before a head: the ball on its post, or a part on its table, and from where each point of it is seen.
 
 use crate::geometry::{Rigid, Vec3};
-use crate::scene::{MAX_INCIDENCE_DEG, Part, Scene, Surface};
+use crate::scene::{MAX_INCIDENCE_DEG, Part, PartKind, Scene, Surface};
 
 /// Light that leaves the surface flatter than this does not get into the camera, degrees.
 const MAX_RETURN_DEG: f64 = 80.0;
@@ -65,6 +65,12 @@ impl Subject {
             Self::Ball(scene) => scene.dirt.has_holes,
             Self::Part { loses_points, .. } => *loses_points,
         }
+    }
+
+    /// Whether it is a right-angle plate.
+    #[must_use]
+    pub fn is_plate(&self) -> bool {
+        matches!(self, Self::Part { part, .. } if part.kind == PartKind::Plate)
     }
 
     /// Where the part stands, if it is one.

@@ -1,4 +1,4 @@
-//! The profiler's worker: the live profile with its arc, and profiles on request.
+//! The profiler's worker: the live profile with what is found in it, and profiles on request.
 
 use std::sync::mpsc::SyncSender;
 use std::sync::{Arc, Mutex};
@@ -9,7 +9,7 @@ use super::{Connect, Deadlines, Duty, Hold, start};
 use crate::device::driver::{ProfileReading, SensorDriver};
 use crate::device::error::DeviceError;
 use crate::device::link::LinkState;
-use crate::fit::{ArcFit, ArcOptions, ArcRefusal, extract_arc};
+use crate::fit::{ArcRefusal, Found, Refusal, Sought};
 use crate::watch::Wake;
 
 /// A live profile with what was found in it.
@@ -17,18 +17,18 @@ use crate::watch::Wake;
 pub struct LiveProfile {
     /// The profile.
     pub reading: ProfileReading,
-    /// The arc fitted to it; the reason where there is none.
-    pub arc: Result<Arc<ArcFit>, ArcRefusal>,
+    /// The arc, edge or tip in it; the reason where there is none.
+    pub found: Result<Found, Refusal>,
     /// Profiles a second, as they come.
     pub rate_hz: f64,
 }
 
 impl LiveProfile {
-    /// A profile with the arc that is in it.
+    /// A profile with what is looked for in it.
     #[must_use]
-    pub fn of(reading: ProfileReading, ball: Option<&ArcOptions>, rate_hz: f64) -> Self {
-        let arc = ball.map_or(Err(ArcRefusal::NoBall), |options| extract_arc(&reading.profile, options).map(Arc::new));
-        Self { reading, arc, rate_hz }
+    pub fn of(reading: ProfileReading, sought: Option<&Sought>, rate_hz: f64) -> Self {
+        let found = sought.map_or_else(|| Err(ArcRefusal::NoBall.into()), |sought| sought.find(&reading.profile));
+        Self { reading, found, rate_hz }
     }
 }
 
@@ -47,7 +47,7 @@ pub enum SensorRequest {
 #[derive(Debug, Default)]
 struct Shown {
     /// What to look for in the profiles; `None`: for nothing.
-    ball: Option<ArcOptions>,
+    sought: Option<Sought>,
     live: Option<LiveProfile>,
 }
 
@@ -59,17 +59,17 @@ struct SensorDuty {
 
 impl SensorDuty {
     fn show(&mut self, reading: &ProfileReading, post: &Post<SensorRequest>) {
-        let (ball, is_known) = {
+        let (sought, is_known) = {
             let shown = lock(&self.shown);
             let is_same = |live: &LiveProfile| {
                 live.reading.trigger_count == reading.trigger_count && live.reading.profile == reading.profile
             };
-            (shown.ball, shown.live.as_ref().is_some_and(is_same))
+            (shown.sought, shown.live.as_ref().is_some_and(is_same))
         };
         if is_known {
             return;
         }
-        let live = LiveProfile::of(reading.clone(), ball.as_ref(), self.rate.count(reading.received_at));
+        let live = LiveProfile::of(reading.clone(), sought.as_ref(), self.rate.count(reading.received_at));
         lock(&self.shown).live = Some(live);
         post.tell();
     }
@@ -103,7 +103,7 @@ impl Duty for SensorDuty {
                 let for_link = outcome.as_ref().map(drop).map_err(Clone::clone);
                 let reading = outcome.as_ref().ok().cloned().flatten();
                 reply.send(outcome).ok();
-                // The arc takes its time; it is looked for once the asker has the profile.
+                // Fits take their time; they are made once the asker has the profile.
                 if let Some(reading) = reading {
                     self.show(&reading, post);
                 }
@@ -190,13 +190,13 @@ impl SensorClient {
     }
 
     /// What to look for in the live profiles; `None`: for nothing.
-    pub fn look_for(&self, ball: Option<ArcOptions>) {
+    pub fn look_for(&self, sought: Option<Sought>) {
         let mut shown = lock(&self.shown);
-        if shown.ball != ball {
-            shown.ball = ball;
+        if shown.sought != sought {
+            shown.sought = sought;
             // The one that is shown was looked at for something else.
             if let Some(live) = shown.live.take() {
-                shown.live = Some(LiveProfile::of(live.reading, ball.as_ref(), live.rate_hz));
+                shown.live = Some(LiveProfile::of(live.reading, sought.as_ref(), live.rate_hz));
             }
         }
     }

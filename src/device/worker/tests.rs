@@ -8,7 +8,7 @@ use super::*;
 use crate::device::driver::LinearMove;
 use crate::device::fake::{FakeCell, Fault, RADIUS_MM, short_deadlines};
 use crate::device::link::LinkState;
-use crate::fit::ArcOptions;
+use crate::fit::{ArcOptions, Sought};
 use crate::geometry::Vec3;
 
 /// Long past anything that is waited for here, on a slow machine as well.
@@ -249,14 +249,15 @@ fn what_was_seen_over_one_connection_is_not_shown_over_the_next() {
 fn the_live_profile_comes_with_its_arc_and_its_rate() {
     let cell = FakeCell::new(5.0);
     let (_robot, sensor) = cell.start(patient());
-    sensor.client().look_for(Some(ArcOptions { ball_radius_mm: RADIUS_MM, profile_std_mm: None }));
-    wait_until("profiles", || sensor.client().live().is_some_and(|live| live.rate_hz > 0.0 && live.arc.is_ok()));
+    let ball = ArcOptions { ball_radius_mm: RADIUS_MM, profile_std_mm: None };
+    sensor.client().look_for(Some(Sought::Arc(ball)));
+    wait_until("profiles", || sensor.client().live().is_some_and(|live| live.rate_hz > 0.0 && live.found.is_ok()));
     let live = sensor.client().live().expect("live");
-    let radius_mm = live.arc.expect("an arc").circle.radius_mm;
+    let radius_mm = live.found.expect("an arc").arc().expect("of the ball").circle.radius_mm;
     // 5 mm off the centre of a ball of 15 mm, with noise of 0.005 mm.
     assert!((radius_mm - 200.0_f64.sqrt()).abs() < 0.05, "{radius_mm}");
     sensor.client().look_for(None);
-    assert!(sensor.client().live().expect("live").arc.is_err());
+    assert!(sensor.client().live().expect("live").found.is_err());
 }
 
 #[test]

@@ -117,8 +117,8 @@ fn off_edge_mm(reduced: &PlateReduced, refit: &PlateRefit, station: usize) -> f6
 
 /// The session's index of a station, and its name.
 fn named(plate: &PlateFound, station: usize) -> Option<(usize, &str)> {
-    let place = plate.reduced.points.iter().position(|point| point.station == station)?;
-    plate.points.get(place).map(|point| (point.station_idx, point.label.as_str()))
+    let named = plate.points.iter().find(|point| point.station == station)?;
+    Some((named.station_idx, &named.label))
 }
 
 fn bars(plate: &PlateFound, distances: &[f64], accused: usize) -> Plot {

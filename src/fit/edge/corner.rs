@@ -41,6 +41,7 @@ pub(super) fn fit(points: &Points, before: &Piece, after: &Piece, options: &Edge
         feature: Feature::Corner,
         point_mm,
         covariance,
+        gap_mm: [0.0; 2],
         flanks: vec![before.flank(points, End::Last), after.flank(points, End::First)],
         point_std_mm: rms(stds_mm),
         classes: pieces::classes(points, &flanks),
@@ -48,7 +49,7 @@ pub(super) fn fit(points: &Points, before: &Piece, after: &Piece, options: &Edge
 }
 
 /// Each line holds its crossing within its own uncertainty across itself: N·p = c with independent errors of c.
-fn covariance(fits: [&LineFit; 2], point_mm: [f64; 2], stds_mm: [f64; 2]) -> Option<Matrix2<f64>> {
+pub(super) fn covariance(fits: [&LineFit; 2], point_mm: [f64; 2], stds_mm: [f64; 2]) -> Option<Matrix2<f64>> {
     let normals = fits.map(|fit| [-fit.line.direction[1], fit.line.direction[0]]);
     let inverse = Matrix2::new(normals[0][0], normals[0][1], normals[1][0], normals[1][1]).try_inverse()?;
     let variances = [0, 1].map(|idx| fits[idx].variance_factor_at(point_mm) * stds_mm[idx] * stds_mm[idx]);

@@ -45,10 +45,20 @@ pub(super) fn fit(
             f64::midpoint(covariance[(0, 1)], covariance[(1, 0)]),
             covariance[(1, 1)],
         ),
+        gap_mm: far.map_or([0.0; 2], |far| gap(points, last, far, point_mm[0], slide)),
         flanks: vec![piece.flank(points, end)],
         point_std_mm,
         classes: pieces::classes(points, [piece]),
     })
+}
+
+/// From the end to the place across the line where the next surface begins, along the surface, mm; none where no more is
+/// missing than points that drop out one by one.
+fn gap(points: &Points, last: usize, far: usize, end_x_mm: f64, slide: Vector2<f64>) -> [f64; 2] {
+    if points.grid[far].abs_diff(points.grid[last]) <= MAX_BEYOND {
+        return [0.0; 2];
+    }
+    (slide * (points.x_mm[far] - end_x_mm)).into()
 }
 
 /// How far beyond the last point the surface ends, in pitches: mean and variance.

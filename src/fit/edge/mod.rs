@@ -73,6 +73,9 @@ pub struct EdgeFit {
     pub point_mm: [f64; 2],
     /// Its covariance, mm². For a free edge the pitch of the points counts as well.
     pub covariance: Matrix2<f64>,
+    /// From the point along its flank to where the surface behind a step begins, (x, z), mm: the shadow of the step, or a hole
+    /// in the measurement that hides where the edge is. Zero where nothing is missing between them, or nothing follows.
+    pub gap_mm: [f64; 2],
     /// The flanks that it was found from: an edge and a step have one, a corner and a pointed tip two, a rounded tip none.
     pub flanks: Vec<Flank>,
     /// Noise of a point across its flank, mm.
@@ -116,7 +119,12 @@ pub fn extract_edge(profile: &Profile, options: &EdgeOptions) -> Result<EdgeFit,
     let (seen, flattest_rad) = sighting::all(&points, &pieces);
     let of_plate: Vec<Seen> =
         seen.into_iter().filter(|seen| !seen.is_of(|piece| sighting::is_narrow(&points, &pieces[piece]))).collect();
-    let wanted: Vec<Seen> = of_plate.iter().copied().filter(|seen| seen.answers(options.feature)).collect();
+    let mut wanted: Vec<Seen> = of_plate.iter().copied().filter(|seen| seen.answers(options.feature)).collect();
+    // Where a head's field of view is narrower than its profile, every surface ends like a free edge at its border.
+    let is_free_end = |seen: &Seen| seen.feature() == Feature::Edge;
+    if options.feature != Some(Feature::Edge) && wanted.iter().any(|seen| !is_free_end(seen)) {
+        wanted.retain(|seen| !is_free_end(seen));
+    }
     match wanted.as_slice() {
         [found] => fit(&points, &pieces, found, options)
             .ok_or(EdgeRefusal::NoFeature { feature: options.feature, num_points: points.len() }),

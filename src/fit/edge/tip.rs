@@ -2,13 +2,14 @@
 
 use nalgebra::{Matrix2, Matrix2x3, Vector2};
 
+use crate::fit::line::LineFit;
 use crate::fit::{EdgeRefusal, PointClass, algebraic, line, robust};
 use crate::geometry::stats::median;
 
 use super::pieces::{self, Piece};
 use super::points::Points;
 use super::sighting::is_narrow;
-use super::{EdgeFit, EdgeOptions, Feature, Sighting, corner};
+use super::{EdgeFit, EdgeOptions, Feature, Flank, Sighting, corner};
 
 /// A thing wider than this part of the profile is no tip.
 const WIDEST_PART: f64 = 0.25;
@@ -32,6 +33,12 @@ const POOR_FIT: f64 = 3.0;
 const CERTAIN_AT_STDS: f64 = 6.0;
 /// All but one in so many of the points have to be on the top that is found.
 const MOST_OF: usize = 5;
+/// A middle that is uncertain by more pitches than this is none.
+const LOOSEST_MIDDLE_PITCHES: f64 = 4.0;
+/// A flank of a coarsely sampled tip has at least so many points: two hold a line, and two say whether it is one.
+const MIN_ROOF_POINTS: usize = 4;
+/// Noise that is known beforehand counts as much as so many residuals: a few points do not tell their own.
+const KNOWN_NOISE_WEIGHT: f64 = 10.0;
 
 /// Finds the one narrow thing.
 pub(super) fn find(points: &Points, pieces: &[Piece], options: &EdgeOptions) -> Result<EdgeFit, EdgeRefusal> {
@@ -113,15 +120,16 @@ fn is_inside(points: &Points, cluster: &[usize]) -> bool {
     points.grid[cluster[0]] > 0 && points.grid[cluster[cluster.len() - 1]] + 1 < points.num_grid
 }
 
-/// Whether its top is nearer to the sensor than every surface that is seen beside it.
+/// Whether its top is nearer to the sensor than every surface that is seen beside it, where that comes nearest. A pin's own
+/// shaft, seen aslant, is such a surface as well.
 fn is_in_front(points: &Points, cluster: &[usize], background: &[&Piece]) -> bool {
     let Some(top) = cluster.iter().map(|place| points.z_mm[*place] * points.away).reduce(f64::min) else {
         return false;
     };
-    let x_mm = points.x_mm[cluster[cluster.len() / 2]];
+    let middle = cluster[cluster.len() / 2];
     background
         .iter()
-        .filter_map(|piece| piece.fit.line.at_x_mm(x_mm))
+        .filter_map(|piece| piece.fit.line.at_x_mm(points.x_mm[middle.clamp(piece.first, piece.last)]))
         .all(|[_, z_mm]| top < z_mm * points.away - 2.0 * points.tolerance_mm)
 }
 
@@ -131,6 +139,7 @@ fn fit(points: &Points, pieces: &[Piece], cluster: &[usize], options: &EdgeOptio
     // Chords of a round thing fit it worse than its circle does, and a circle fits a pointed one worse than its flanks do.
     let better = [round, pointed].into_iter().flatten().min_by(|a, b| a.misfit_mm.total_cmp(&b.misfit_mm));
     better
+        .or_else(|| roof(points, cluster, options))
         .map(|found| found.edge)
         .or_else(|| top_alone(points, cluster, options))
         .or_else(|| middle(points, cluster, options))
@@ -163,11 +172,98 @@ fn flanks_meet(points: &Points, pieces: &[Piece], cluster: &[usize], options: &E
     // A shaft below its cone makes a corner as well; the tip is the one nearest to the sensor.
     let range = |edge: &EdgeFit| edge.point_mm[1] * points.away;
     let found = tops.min_by(|a, b| range(a).total_cmp(&range(b)))?;
+    if stands_above(points, cluster, found.point_mm) {
+        return None;
+    }
     let distance = |place: &usize| {
         let distances = parts.iter().map(|piece| piece.fit.line.distance_mm(points.at(*place)).abs());
         distances.fold(f64::INFINITY, f64::min)
     };
     Some(Shape::new(EdgeFit { feature: Feature::Tip, ..found }, cluster.iter().map(distance)))
+}
+
+/// Whether the thing reaches nearer to the sensor than a point: two neighbours do, as one may be a stray. What meets there is
+/// then a shoulder of it, and not its top.
+fn stands_above(points: &Points, cluster: &[usize], point_mm: [f64; 2]) -> bool {
+    let is_above = |place: usize| (point_mm[1] - points.z_mm[place]) * points.away > points.tolerance_mm;
+    cluster.windows(2).any(|pair| pair[1] == pair[0] + 1 && is_above(pair[0]) && is_above(pair[1]))
+}
+
+/// A pointed tip of a few points: the two lines that meet between two neighbours of them, each as long as it stays straight.
+/// Where both are long enough to be found by themselves, this is none of its business.
+fn roof(points: &Points, cluster: &[usize], options: &EdgeOptions) -> Option<Shape> {
+    let flanks_at = |divide: usize| {
+        let before = grown(points, cluster[..divide].iter().rev(), options)?;
+        let after = grown(points, cluster[divide..].iter(), options)?;
+        let [fewer, more] = [before.num_points.min(after.num_points), before.num_points.max(after.num_points)];
+        let is_coarse = fewer < pieces::MIN_FLANK_POINTS && more < 2 * pieces::MIN_FLANK_POINTS;
+        is_coarse.then_some((divide, [before, after]))
+    };
+    let roofs = (MIN_ROOF_POINTS..=cluster.len().saturating_sub(MIN_ROOF_POINTS)).filter_map(flanks_at);
+    let found = roofs.filter_map(|(divide, flanks)| roof_of(points, cluster, divide, &flanks, options));
+    let found = found.filter(|shape| !stands_above(points, cluster, shape.edge.point_mm));
+    found.min_by(|a, b| a.misfit_mm.total_cmp(&b.misfit_mm))
+}
+
+/// The longest straight run from the first of some places on.
+fn grown<'a>(points: &Points, places: impl Iterator<Item = &'a usize>, options: &EdgeOptions) -> Option<LineFit> {
+    let (mut x_mm, mut z_mm) = (Vec::new(), Vec::new());
+    let mut latest: Option<LineFit> = None;
+    for place in places {
+        let at = points.at(*place);
+        if latest.is_some_and(|fit| fit.line.distance_mm(at).abs() > points.tolerance_mm) {
+            break;
+        }
+        x_mm.push(at[0]);
+        z_mm.push(at[1]);
+        if x_mm.len() >= MIN_ROOF_POINTS {
+            latest = Some(line::fit(&x_mm, &z_mm)?);
+        }
+    }
+    latest.filter(|fit| fit.rms_mm <= POOR_FIT * expected_noise(points, options))
+}
+
+/// Two flanks that meet between the neighbours on either side of `divide`, and fall away from the sensor.
+fn roof_of(
+    points: &Points,
+    cluster: &[usize],
+    divide: usize,
+    flanks: &[LineFit; 2],
+    options: &EdgeOptions,
+) -> Option<Shape> {
+    let point_mm = flanks[0].line.crossing_mm(&flanks[1].line)?;
+    let beside = [divide - 1, divide].map(|idx| points.x_mm[cluster[idx]]);
+    let is_between = beside.iter().all(|x| (point_mm[0] - x).abs() <= (beside[1] - beside[0]).abs());
+    let falls = |fit: &LineFit| (fit.line.centre_mm[1] - point_mm[1]) * points.away > 0.0;
+    let known_mm = options.profile_std_mm.unwrap_or(points.noise_mm);
+    let cost: f64 = flanks.iter().map(LineFit::cost_mm2).sum();
+    let num_points = flanks[0].num_points + flanks[1].num_points;
+    let freedom = to_f64(num_points - 4);
+    let std_mm = ((KNOWN_NOISE_WEIGHT * known_mm * known_mm + cost) / (KNOWN_NOISE_WEIGHT + freedom)).sqrt();
+    let certain_rad = flanks.iter().map(|fit| std_mm * std_mm / fit.spread_mm2).sum::<f64>().sqrt() * CERTAIN_AT_STDS;
+    if !is_between || !flanks.iter().all(falls) || flanks[0].line.angle_to_rad(&flanks[1].line) < certain_rad {
+        return None;
+    }
+    let range = divide - flanks[0].num_points..divide + flanks[1].num_points;
+    let distance = |place: &usize| {
+        let distances = flanks.iter().map(|fit| fit.line.distance_mm(points.at(*place)).abs());
+        distances.fold(f64::INFINITY, f64::min)
+    };
+    let flank = |fit: &LineFit, near: usize, far: usize| Flank {
+        ends_mm: [near, far].map(|idx| fit.line.foot_mm(points.at(cluster[idx]))),
+        rms_mm: fit.rms_mm,
+        num_points: fit.num_points,
+    };
+    let edge = EdgeFit {
+        feature: Feature::Tip,
+        point_mm,
+        covariance: corner::covariance([&flanks[0], &flanks[1]], point_mm, [std_mm; 2])?,
+        gap_mm: [0.0; 2],
+        flanks: vec![flank(&flanks[0], divide - 1, range.start), flank(&flanks[1], divide, range.end - 1)],
+        point_std_mm: std_mm,
+        classes: classes(points, cluster, cluster[range.clone()].iter().copied()),
+    };
+    Some(Shape::new(edge, cluster[range].iter().map(distance)))
 }
 
 /// Where two neighbouring flanks meet; `None` where they fit poorly, are in one line within their noise, or meet far away.
@@ -217,6 +313,7 @@ fn rounded_top(points: &Points, window: &[usize], cluster: &[usize], options: &E
         feature: Feature::Tip,
         point_mm,
         covariance,
+        gap_mm: [0.0; 2],
         flanks: Vec::new(),
         point_std_mm: found.rms_mm,
         classes: classes(points, cluster, window.iter().copied().filter(on_circle)),
@@ -283,13 +380,21 @@ fn middle(points: &Points, cluster: &[usize], options: &EdgeOptions) -> Option<E
     // the mean of the two.
     let seen_part = to_f64(seen.len()) / to_f64(points.grid[last] - points.grid[first] + 1);
     let of_end = 1.0 / 12.0 + (1.0 - seen_part) / (seen_part * seen_part);
-    let across = points.pitch_mm * points.pitch_mm * of_end / 2.0;
+    let of_pitch = points.pitch_mm * points.pitch_mm * of_end / 2.0;
+    // Seen aslant it may as well be one side of a pointed tip, with its top at the upper end.
+    let beyond_noise = (slope * slope - std_mm * std_mm / straight.spread_mm2).max(0.0).sqrt();
+    let of_side = width_mm(points, &seen) / 2.0 * beyond_noise / STEEPEST_TOP;
+    if of_side > LOOSEST_MIDDLE_PITCHES * points.pitch_mm {
+        return None;
+    }
+    let across = of_pitch + of_side * of_side;
     let slide = Vector2::new(1.0, slope);
     let off = straight.variance_factor_at(point_mm) * std_mm * std_mm;
     Some(EdgeFit {
         feature: Feature::Tip,
         point_mm,
         covariance: slide * slide.transpose() * across + Matrix2::new(0.0, 0.0, 0.0, off),
+        gap_mm: [0.0; 2],
         flanks: Vec::new(),
         point_std_mm: std_mm,
         classes: classes(points, cluster, cluster.iter().copied().filter(on_line)),

@@ -2,8 +2,10 @@
 
 use crate::session::model::{FurtherTarget, Known, Session, Target};
 
+use super::EditRefusal;
 use super::labels::{Labels, repeated};
-use super::{EditRefusal, check_known, check_label, check_stations, check_target};
+use super::setup::{check_known, check_target};
+use super::valid::{check_label, check_stations};
 
 fn at(session: &mut Session, further_idx: usize) -> Result<&mut FurtherTarget, EditRefusal> {
     session.further.get_mut(further_idx).ok_or(EditRefusal::NoSuchFurther { further_idx })

@@ -146,19 +146,29 @@ fn syntax_error(file: String, text: &str, error: &serde_json::Error) -> SessionE
     /// Enough of the text to recognise the place.
     const CONTEXT_CHARS: usize = 24;
     let (line, column) = (error.line(), error.column());
+    if error.is_eof() {
+        return SessionError::CutOff { file, line, column };
+    }
+    // The column counts bytes up to and including the offending one; it may stand inside a character or a word.
+    let line_text = text.lines().nth(line.saturating_sub(1)).unwrap_or_default();
+    let at = (0..column).rev().find(|byte| line_text.is_char_boundary(*byte)).unwrap_or_default();
+    let before = line_text.get(..at).unwrap_or_default();
+    let is_of_word = |c: char| c.is_ascii_alphanumeric() || "+-.".contains(c);
+    let word_start = before.trim_end_matches(is_of_word).len();
+    let rest = |start: usize| line_text.get(start..).unwrap_or_default();
+    let word = rest(word_start).split(|c: char| !is_of_word(c)).next().unwrap_or_default();
     let message = error.to_string();
+    let is_number_word =
+        ["nan", "inf", "infinity"].iter().any(|name| word.trim_start_matches(['+', '-']).eq_ignore_ascii_case(name));
+    if is_number_word || message.starts_with("number out of range") {
+        return SessionError::NotANumber { file, line, column, found: on_one_line(word) };
+    }
     let problem = message.strip_suffix(&format!(" at line {line} column {column}")).unwrap_or(&message);
-    let found = if error.is_eof() {
-        "the end of the file".to_owned()
-    } else {
-        // The column counts bytes up to and including the offending one; it may stand inside a character.
-        let line_text = text.lines().nth(line.saturating_sub(1)).unwrap_or_default();
-        let start = (0..column).rev().find(|byte| line_text.is_char_boundary(*byte)).unwrap_or_default();
-        let rest = line_text.get(start..).unwrap_or_default();
-        match rest.chars().take(CONTEXT_CHARS).collect::<String>() {
-            context if context.is_empty() => "the end of the line".to_owned(),
-            context => format!("`{}`", on_one_line(&context)),
-        }
+    let found = match rest(at).chars().take(CONTEXT_CHARS).collect::<String>() {
+        context if context.is_empty() => "the end of the line".to_owned(),
+        context => format!("`{}`", on_one_line(&context)),
     };
+    // The reader's words for "something else than the beginning of any value".
+    let problem = if problem == "expected value" { "a number, text in quotes, a list or an object" } else { problem };
     SessionError::Syntax { file, line, column, found, problem: on_one_line(problem) }
 }

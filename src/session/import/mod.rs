@@ -348,7 +348,26 @@ pub fn read(
     read::read(sources, options, notation, watch)
 }
 
+/// Whether these stations can be added to a session about this target: only a plate has edges that a station can have seen.
+///
+/// # Errors
+/// [`EditRefusal::EdgesWithoutPlate`].
+pub fn check_edges(stations: &[Station], target: &Target) -> Result<(), EditRefusal> {
+    match stations.iter().filter(|station| station.edge.is_some()).count() {
+        num_stations @ 1.. if *target != Target::RightAnglePlate => {
+            Err(EditRefusal::EdgesWithoutPlate { num_stations })
+        }
+        _ => Ok(()),
+    }
+}
+
 impl Imported {
+    /// Whether the sources are about a plate: a station of them saw an edge.
+    #[must_use]
+    pub fn has_edges(&self) -> bool {
+        self.session.is_none() && check_edges(&self.stations, &Target::Point).is_err()
+    }
+
     /// A new session with what was read, in the notation that it was read in; a session among the sources keeps its name
     /// and target and gets the stations of the others.
     ///
@@ -382,7 +401,11 @@ impl Imported {
     }
 }
 
-/// The session with stations behind its own.
-fn with_stations(session: &Session, stations: Vec<Station>) -> Result<Session, EditRefusal> {
+/// The session with imported stations behind its own.
+///
+/// # Errors
+/// [`EditRefusal`] if they cannot be in this session.
+pub fn with_stations(session: &Session, stations: Vec<Station>) -> Result<Session, EditRefusal> {
+    check_edges(&stations, &session.target)?;
     Edit::InsertStations { at: usize::MAX, stations }.apply(session)
 }

@@ -116,6 +116,54 @@ pub const SPREAD_HINT_LONG: &str = "The calibration knows the sensor's plane fro
 /// In place of that card.
 pub const NO_POINTS: &str = "No profile has given a point yet; the list says why.";
 
+/// Head of the column of profiles.
+pub const PROFILES: &str = "prof.";
+/// Head of the column of points of a scan.
+pub const POINTS: &str = "points";
+/// What it says, on hover.
+pub const POINTS_HINT: &str = "points of the surface that the profiles hold";
+/// Head of the column of depths.
+pub const DEPTH: &str = "Δz / mm";
+/// What it says, on hover.
+pub const DEPTH_HINT: &str = "from the nearest to the farthest point, along the sensor's z";
+/// A profile of a scan without points.
+pub const EMPTY_PROFILE: &str = "No valid point in this profile: nothing was in the sensor's range.";
+/// Title of the card with all profiles of a scan.
+pub const RANGES: &str = "Range of every profile";
+/// What leads on, on its right.
+pub const RANGES_HINT: &str = "measured in Verify";
+/// The same, on hover.
+pub const RANGES_HINT_LONG: &str =
+    "A scan needs no arcs: with a calibration its points become a surface, which Verify → Workpiece shows and measures";
+/// In place of that card.
+pub const NO_RANGES: &str = "No profile of this scan holds a valid point.";
+/// Axis title.
+pub const PROFILE_AXIS: &str = "profile of the scan";
+
+/// Legend of the points of a scan's profile.
+#[must_use]
+pub fn points(num_valid: usize, num_points: usize) -> String {
+    format!("point {num_valid} of {num_points}")
+}
+
+/// Legend of the bars of a scan.
+#[must_use]
+pub fn ranges(num_seen: usize, num_profiles: usize) -> String {
+    format!("nearest to farthest point, {num_seen} of {num_profiles} profiles")
+}
+
+/// Readout of a profile of a scan.
+#[must_use]
+pub fn range_readout(number: usize, near_mm: &str, far_mm: &str) -> String {
+    format!("profile {number}\nz {near_mm} … {far_mm} mm")
+}
+
+/// What a profile of a scan holds.
+#[must_use]
+pub fn scan_line(num_valid: usize, num_points: usize, x_mm: &[String; 2], z_mm: &[String; 2]) -> String {
+    format!("{num_valid} of {num_points} points, x {} … {}, z {} … {} mm", x_mm[0], x_mm[1], z_mm[0], z_mm[1])
+}
+
 /// Legend of an edge's points.
 #[must_use]
 pub fn points_of_edge(edge: &str, count: usize) -> String {

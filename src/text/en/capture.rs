@@ -3,6 +3,8 @@
 use std::time::Duration;
 
 use crate::device::{Readiness, RobotKind, SearchPhase, SensorKind};
+use crate::scene::PartKind;
+use crate::session::Target;
 
 /// Menu.
 pub const MENU: &str = "Cell";
@@ -19,9 +21,37 @@ pub const CELL_LEAD: &str = "Measure with your own devices, or try a simulated c
 pub const PRACTISE: &str = "Practise on a simulated cell";
 /// The same where there is little room.
 pub const PRACTISE_SHORT: &str = "Practise";
+/// The same by its name, in menus and for those who do not see what stands beside it.
+#[must_use]
+pub const fn practise_on(part: Option<PartKind>) -> &'static str {
+    match part {
+        Some(PartKind::Plate) => "Practise on a simulated plate",
+        Some(PartKind::Pin) => "Practise on a simulated pin",
+        _ => PRACTISE,
+    }
+}
+/// The buttons of these, beside each other.
+#[must_use]
+pub const fn practise_button(part: Option<PartKind>) -> &'static str {
+    match part {
+        Some(PartKind::Plate) => "on a plate",
+        Some(PartKind::Pin) => "on a pin",
+        _ => PRACTISE,
+    }
+}
 /// The same, on hover.
-pub const PRACTISE_HINT: &str =
-    "Starts a simulated robot and profiler on this computer, connects to them and begins a session for their ball";
+#[must_use]
+pub const fn practise_hint(part: Option<PartKind>) -> &'static str {
+    match part {
+        Some(PartKind::Plate) => {
+            "The same with a right-angle plate: its two edges are measured, and a pendant is simulated as well"
+        }
+        Some(PartKind::Pin) => "The same with a pin: its tip is measured from several sides",
+        _ => {
+            "Starts a simulated robot and profiler on this computer, connects to them and begins a session for their ball"
+        }
+    }
+}
 /// Button: goes to the capture step.
 pub const CONNECT_CELL: &str = "Connect to a cell…";
 /// Badge of the simulated cell.
@@ -241,8 +271,11 @@ pub fn arc(radius: &str, angle_deg: &str, point_std_um: &str) -> String {
 pub fn arc_short(radius: &str, angle_deg: &str) -> String {
     format!("l = {radius} mm   {angle_deg}°")
 }
-/// Name of the profile without an arc.
-pub const NO_ARC: &str = "no arc";
+/// What was found of an edge or tip, above the plot.
+#[must_use]
+pub fn edge_line(found: &str, point_std_um: &str) -> String {
+    format!("{found}   point noise {point_std_um} µm")
+}
 /// Title of the travel axis.
 pub const TRAVEL_AXIS: &str = "travel from the first profile / mm";
 
@@ -308,6 +341,15 @@ pub const FIND_HINT: &str =
 pub const CAPTURE: &str = "Capture fixed-point station";
 /// The same where the card's title says the rest.
 pub const CAPTURE_SHORT: &str = "Capture one profile";
+/// The button's name.
+#[must_use]
+pub const fn capture_name(target: &Target) -> &'static str {
+    match target {
+        Target::RightAnglePlate => "Capture this edge",
+        Target::Point => "Capture the tip",
+        _ => CAPTURE,
+    }
+}
 /// On hover.
 pub const CAPTURE_HINT: &str = "Keeps one profile and pose where the robot stands, as a station; nothing moves";
 /// Card.
@@ -455,7 +497,9 @@ pub const ROBOT_ONLY_READS: &str = "This connection only reads: jog the robot by
 /// Why nothing can be captured.
 pub const NO_PROFILER: &str = "Connect a profiler first.";
 /// The same.
-pub const NO_BALL_SESSION: &str = "Captures go into a session with a ball: begin one first.";
+pub const NO_TARGET_SESSION: &str = "Captures go into a session with a ball, a plate or a tip: begin one first.";
+/// Why no arc is searched.
+pub const NO_BALL: &str = "Only a ball has a largest arc.";
 /// The same.
 pub const ROUTINE_RUNS: &str = "Wait for the routine under way, or stop it.";
 /// The same.
@@ -525,6 +569,10 @@ pub fn not_ready(found: &str, remedy: &str) -> String {
 
 /// Sentences of the band: what to do next, and why.
 pub mod now {
+    use crate::calibrate::Edge;
+    use crate::session::Target;
+    use crate::text::edges::edge_name;
+
     /// Nothing is connected, nothing was before.
     pub const BEGIN: &str = "No cell is connected. Enter the addresses of robot and profiler at the left, or practise.";
     /// A link is broken.
@@ -545,16 +593,34 @@ pub mod now {
     pub const SESSION: &str = "Captures go into a session. Begin one for your ball; its radius must be right.";
     /// Another target.
     pub const OTHER_TARGET: &str =
-        "The open session is of another target. Begin one for your ball; its radius must be right.";
+        "From the open session's target nothing is calibrated. Begin one for your ball; its radius must be right.";
     /// No profile.
     pub const PROFILE: &str = "Waiting for a profile: check that the laser is on.";
-    /// No arc.
-    pub const JOG: &str = "Jog the robot until the laser line crosses the ball: the arc is then drawn orange.";
+    /// Nothing is found in the profile.
+    #[must_use]
+    pub const fn jog(target: &Target) -> &'static str {
+        match target {
+            Target::RightAnglePlate => {
+                "Jog the robot until the laser line crosses one edge of the plate: its point is then marked."
+            }
+            Target::Point => "Jog the robot until the laser line lies on the tip: its point is then marked.",
+            _ => "Jog the robot until the laser line crosses the ball: the arc is then drawn orange.",
+        }
+    }
     /// No mounting.
     pub const MOUNT: &str =
         "Say roughly how the sensor is mounted: the next stations can then be proposed. 10° and 20 mm will do.";
     /// Not armed.
-    pub const ARM: &str = "The line is on the ball. See that nobody is in reach of the robot, then arm motion.";
+    #[must_use]
+    pub const fn arm(target: &Target) -> &'static str {
+        match target {
+            Target::RightAnglePlate => {
+                "The line is on an edge. See that nobody is in reach of the robot, then arm motion."
+            }
+            Target::Point => "The line is on the tip. See that nobody is in reach of the robot, then arm motion.",
+            _ => "The line is on the ball. See that nobody is in reach of the robot, then arm motion.",
+        }
+    }
     /// All is ready.
     pub const RUN: &str = "Ready. The run measures every station by itself; Stop, Space or Escape ends it.";
     /// Nobody knows the mounting yet.
@@ -562,9 +628,30 @@ pub mod now {
     /// A proposal waits.
     pub const ARM_FOR_PROPOSAL: &str =
         "Look at the proposed pose. See that nobody is in reach of the robot, then arm motion.";
-    /// A read-only robot.
-    pub const CAPTURE: &str =
-        "The line is on the ball. Capture here, then jog to another orientation and capture again.";
+    /// A robot that somebody jogs.
+    #[must_use]
+    pub fn capture(target: &Target, edge: Edge) -> String {
+        let on = match target {
+            Target::RightAnglePlate => format!("edge {}, as chosen below", edge_name(edge)),
+            Target::Point => "the tip".to_owned(),
+            _ => "the ball".to_owned(),
+        };
+        format!("The line is on {on}. Capture here, then jog to another orientation and capture again.")
+    }
+    /// The first capture of an edge.
+    #[must_use]
+    pub fn first_on_edge(edge: Edge) -> String {
+        format!(
+            "Capture edge {} here: the other stations are proposed from the first one of each edge.",
+            edge_name(edge)
+        )
+    }
+    /// The other edge has none yet.
+    #[must_use]
+    pub fn other_edge(edge: Edge) -> String {
+        let name = edge_name(edge);
+        format!("Now jog until the line crosses edge {name}, choose edge {name} below, and capture once there.")
+    }
     /// A proposal waits.
     pub const ACCEPT: &str = "Look at the proposed pose. The robot goes there in a straight line.";
     /// A proposal cannot be gone to.

@@ -1,16 +1,16 @@
 //! What the live cell has to say: notices, and the reasons for a proposed pose.
 
+use crate::calibrate::Edge;
 use crate::device::{MotionRefusal, RobotKind, RoutineEnd, SensorKind};
 use crate::plan::PlannedStation;
 
+use super::edges::edge_name;
 use super::plural;
 
 /// A capture has nowhere to go.
-pub const NO_SESSION: &str =
-    "nothing was captured: no session is open. Begin one for a ball of your radius, then capture again";
-/// The open session is for something else.
-pub const NOT_A_BALL: &str =
-    "nothing was captured: the open session's target is no ball. Begin a session for a ball, then capture again";
+pub const NO_SESSION: &str = "nothing was captured: no session is open. Begin one for your target, then capture again";
+/// From the open session's target nothing is calibrated.
+pub const NOTHING_TO_CAPTURE: &str = "nothing was captured: the open session is for no ball, plate or tip. Begin a session for one of these, then capture again";
 /// One thing at a time.
 pub const BUSY: &str = "the cell is at work: stop it first, or wait until it has ended";
 /// What holds for a routine holds to its end.
@@ -38,6 +38,17 @@ pub const NO_MOUNTING: &str = "no pose can be proposed yet: say roughly how the 
 /// A rough plan needs to know where the ball is.
 pub const NO_BALL_SEEN: &str =
     "no pose can be proposed yet: bring the laser line onto the ball, so that it is known where it is";
+/// A rough plan needs to know where the tip is.
+pub const NO_TIP_SEEN: &str =
+    "no pose can be proposed yet: bring the laser line onto the tip, so that it is known where it is";
+/// A rough plan needs a point of each edge.
+#[must_use]
+pub fn edge_unseen(edge: Edge) -> String {
+    let name = edge_name(edge);
+    format!(
+        "no pose can be proposed yet: jog until the laser line crosses edge {name}, choose edge {name}, and capture it once"
+    )
+}
 /// A run would end after its first station.
 pub const RUN_NEEDS_MOUNTING: &str = "the run was not begun: after its first station nobody would know where to go. Say roughly how the sensor is mounted on the flange, or capture a few stations by hand first";
 /// Why a run ended.
@@ -100,6 +111,7 @@ pub fn reason_of_end(end: &RoutineEnd) -> Option<String> {
         RoutineEnd::Done => return None,
         RoutineEnd::Searched(end) if end.is_found() => return None,
         RoutineEnd::Searched(end) => end.to_string(),
+        RoutineEnd::NothingSeen { reason } => nothing_seen(reason),
         RoutineEnd::NotAllowed(refusal) => format!("the robot was not moved: {refusal}"),
         RoutineEnd::NeverStill { moved_mm: None } => {
             "the robot did not stand still: its controller says that it moves, again and again. Let it settle longer"
@@ -200,11 +212,24 @@ pub fn reason_of_planned(station: &PlannedStation, now_mm: Option<f64>) -> Strin
 /// Why a station is proposed before there is a solution.
 #[must_use]
 pub fn reason_of_rough(station: &PlannedStation) -> String {
-    format!("{}: another orientation, from the rough mounting and the ball as seen so far", orientation(station))
+    let seen = if station.edge.is_some() { "the edges" } else { "the target" };
+    format!("{}: another orientation, from the rough mounting and {seen} as seen so far", orientation(station))
 }
 
+/// Why the second station of an edge is proposed.
+pub const REASON_OF_BESIDE: &str =
+    "the same orientation, shifted across the line: it shows in which direction the edge goes";
+
 fn orientation(station: &PlannedStation) -> String {
-    format!("tilted {:.0}° towards {:.0}°, spun {:.0}°", station.tilt_deg, station.azimuth_deg, station.spin_deg)
+    let turned =
+        format!("tilted {:.0}° towards {:.0}°, spun {:.0}°", station.tilt_deg, station.azimuth_deg, station.spin_deg);
+    station.edge.map_or(turned.clone(), |edge| format!("edge {}, {turned}", edge_name(edge)))
+}
+
+/// A profile that was to show the target does not.
+#[must_use]
+pub fn nothing_seen(reason: &str) -> String {
+    format!("the target was not found: {reason}")
 }
 
 /// A station by its label.

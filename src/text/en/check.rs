@@ -1,9 +1,22 @@
 //! Sentences of the findings of `handeye check`.
 
+use crate::calibrate::Method;
 use crate::session::check::Finding;
 use crate::session::table::edge_text;
 
 use super::plural;
+use crate::text::digits;
+
+/// A touched point that a method has elsewhere.
+#[must_use]
+pub fn touched_point_off(distance_mm: f64, std_mm: f64, method: Method) -> String {
+    format!(
+        "The touched point lies {distance} mm from where the tip is found (± {std} mm, 1 σ): check its digits, signs and frame, and the tool that touched it. ({method})",
+        distance = digits::fixed(distance_mm, if distance_mm < 10.0 { 2 } else { 0 }),
+        std = digits::value(std_mm, Some(std_mm)),
+        method = method.id()
+    )
+}
 
 /// What was found, in one sentence.
 #[must_use]

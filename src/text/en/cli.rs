@@ -2,7 +2,7 @@
 
 use crate::calibrate::{Edge, Method, Mount, Verdict, VerdictReason, Warning};
 use crate::diagnose::Reason;
-use crate::session::{Session, Target};
+use crate::session::{FurtherTarget, Session, Target};
 
 use super::diagnosis::{fault_message, target_word};
 use super::edges::edge_name;
@@ -42,6 +42,21 @@ pub fn no_such_station(label: &str, session: &Session) -> String {
 #[must_use]
 pub fn answer_head(method: Method) -> String {
     format!("Answer: {} ({})", method_name(method), method.id())
+}
+
+/// The session has more targets than the one that is solved here.
+#[must_use]
+pub fn further_line(further: &[FurtherTarget]) -> String {
+    /// More are counted.
+    const MAX_NAMES: usize = 5;
+    let mut names: Vec<String> = further.iter().take(MAX_NAMES).map(|further| further.name.clone()).collect();
+    names.extend((further.len() > MAX_NAMES).then(|| format!("{} more", further.len() - MAX_NAMES)));
+    format!(
+        "not used here: the further target{} {}; `handeye verify` judges this result on {}, and solves all together",
+        plural(further.len()),
+        names.join(", "),
+        if further.len() == 1 { "it" } else { "them" }
+    )
 }
 
 /// Nothing is wrong with a result that is not good all the same.

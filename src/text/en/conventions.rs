@@ -1,9 +1,40 @@
 //! Wording of pose notations: their names, the bar above the pose table, and its dialogs.
 
+use nalgebra::UnitQuaternion;
+
 use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
-use crate::geometry::{AngleOrder, PoseConvention, PoseNotation};
+use crate::geometry::{AngleOrder, Mat3, PoseConvention, PoseNotation};
+use crate::text::digits;
 
 use super::plural;
+
+/// Near gimbal lock two of the angles may be anything together: which ones, and how well the orientation as a whole is
+/// known, where the σ of the angles would say too little of it.
+#[must_use]
+pub fn not_known_apart(
+    convention: &PoseConvention,
+    rotation: &UnitQuaternion<f64>,
+    rotation_covariance: &Mat3,
+) -> Option<String> {
+    /// An angle this much less known than the orientation owes it to the lock: it is within 15° then.
+    const RATIO: f64 = 4.0;
+    let whole_deg = rotation_covariance.symmetric_eigenvalues().max().max(0.0).sqrt().to_degrees();
+    let angles_std = convention.angles_std_deg(rotation, rotation_covariance);
+    let poorly_known: Vec<&str> = convention
+        .angle_names
+        .into_iter()
+        .zip(angles_std)
+        .filter(|(_, std_deg)| *std_deg > RATIO * whole_deg)
+        .map(|(name, _)| name)
+        .collect();
+    (poorly_known.len() > 1).then(|| {
+        format!(
+            "near gimbal lock: {} are not known apart; the orientation as a whole is, to ± {}° about its weakest axis",
+            poorly_known.join(" and "),
+            digits::value(whole_deg, Some(whole_deg))
+        )
+    })
+}
 
 /// Before the choice of a notation.
 pub const SHOWN_AS: &str = "Shown as";
@@ -309,5 +340,33 @@ pub fn convention_detail(convention: &PoseConvention) -> String {
     match convention.order {
         AngleOrder::RotationVector => "axis times angle".to_owned(),
         order => format!("{}, {order}", convention.formula),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn near_gimbal_lock_two_angles_are_said_not_to_be_known_apart() {
+        // A tenth of a degree about every axis.
+        let covariance = Mat3::identity() * 0.1_f64.to_radians().powi(2);
+        for (id, angles_deg, expected) in [
+            ("fanuc-wpr", [-146.1, -88.0, 147.9], Some("W and R")),
+            ("fanuc-wpr", [1.8, -1.5, 91.2], None),
+            ("fanuc-wpr", [10.0, 70.0, 20.0], None),
+            ("kuka-abc", [20.0, 88.5, 10.0], Some("A and C")),
+            ("ur-rotvec", [1.0, 2.0, 0.5], None),
+        ] {
+            let convention = PoseConvention::by_id(id).expect("known");
+            let rotation = convention.rotation_from_angles_deg(angles_deg);
+            let remark = not_known_apart(convention, &rotation, &covariance);
+            let expected = expected.map(|angles| {
+                format!(
+                    "near gimbal lock: {angles} are not known apart; the orientation as a whole is, to ± 0.10° about its weakest axis"
+                )
+            });
+            assert_eq!(remark, expected, "{id} {angles_deg:?}");
+        }
     }
 }

@@ -38,6 +38,9 @@ fn several_label(edits: &[Edit], session: &Session) -> String {
     match edits {
         [] => "change nothing".to_owned(),
         [only] => edit_label(only, session),
+        _ if edits.iter().all(|edit| matches!(edit, Edit::AddFurther(_))) => {
+            format!("add {} targets", edits.len())
+        }
         [first, second] => format!("{} and {}", edit_label(first, session), edit_label(second, session)),
         [first, others @ ..] => format!("{} and {} other changes", edit_label(first, session), others.len()),
     }

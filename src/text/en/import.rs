@@ -197,6 +197,9 @@ pub const RADIUS_MISSING: &str = "Type the ball's radius in mm, for example 15."
 /// Why there can be no new session yet.
 pub const RADIUS_UNUSABLE: &str = "Type a radius from 0.001 to 10 000 mm.";
 
+/// Why poses that have an edge each cannot go there.
+pub const EDGES_OF_NO_PLATE: &str = "These poses have a column edge, which only a plate has: choose the right-angle plate, or set the column to be ignored.";
+
 /// The forms, with what they look like.
 pub const FORMS: [(Kind, &str); 9] = [
     (Kind::PoseTable, "one pose a row: CSV, TSV, or columns apart by blanks; with points or the names of profiles"),

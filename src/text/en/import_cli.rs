@@ -156,6 +156,14 @@ pub fn exported_line(file: &str, number: usize, noun: &str) -> String {
 pub const RADIUS_MISSING: &str =
     "--radius-mm: found none, expected the ball's radius in mm, or --target plate or point";
 
+/// Another target than a ball has no radius.
+pub const RADIUS_OF_NO_BALL: &str =
+    "--radius-mm: found a radius beside another target than a ball, expected --target ball or no radius";
+
+/// Poses of a plate that are to become another target's.
+pub const EDGES_OF_NO_PLATE: &str = "edge: found a column edge with p and q, which only a plate has: did you mean --target plate? \
+     For another target pass the column over with - in --columns";
+
 /// The comma cannot be both.
 pub const COMMA_TWICE: &str =
     "--decimal-comma: found commas between the cells too, expected --separator semicolon or tab";

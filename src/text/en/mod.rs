@@ -2,6 +2,7 @@
 
 pub mod arcs;
 pub mod capture;
+pub mod capture_edges;
 pub mod capture_settings;
 pub mod cell;
 pub mod check;

@@ -256,6 +256,15 @@ pub fn points_used(num_used: usize, num_points: usize) -> String {
     format!("{num_used} of {num_points}")
 }
 
+/// Row of the inspector.
+pub const RANGE_SEEN: &str = "range seen, z";
+
+/// From one length to another.
+#[must_use]
+pub fn from_to_mm(from: &str, to: &str) -> String {
+    format!("{from} … {to} mm")
+}
+
 /// What the side's ratio means.
 pub const SIDE_HINT: &str =
     "The side of the laser plane on which the ball's centre lies; the other side costs that many times as much";

@@ -1,7 +1,8 @@
 //! Wording of the start page and the session's overview.
 
 use crate::calibrate::Mount;
-use crate::session::Target;
+use crate::session::{FurtherTarget, Known, Target};
+use crate::text::digits;
 
 /// Heading of the start page.
 pub const TITLE: &str = "Calibrate a laser profiler on a robot";
@@ -100,6 +101,65 @@ pub const NO_NAME: &str = "no name";
 pub const BALL_RADIUS: &str = "ball radius";
 /// Row.
 pub const BALL_RADIUS_STD: &str = "radius, 1σ";
+/// Row: where the tip is, touched with a calibrated tool.
+pub const TOUCHED_POINT: &str = "touched in the base, x y z";
+/// Hint in the empty field.
+pub const TOUCHED_POINT_HINT: &str = "not touched";
+/// Row: from a certificate.
+pub const NOMINAL_ANGLE: &str = "angle of its planes";
+/// Row: from a certificate.
+pub const NOMINAL_PITCH: &str = "pitch of its teeth";
+/// Row: from a certificate.
+pub const NOMINAL_HEIGHT: &str = "height of its teeth";
+/// Row: from a certificate.
+pub const NOMINAL_DIAMETER: &str = "diameter";
+/// Row: where methods that need one start.
+pub const ROUGH_MOUNTING: &str = "rough mounting";
+/// Hint in the empty field.
+pub const ROUGH_MOUNTING_HINT: &str = "not stated: x y z and three angles";
+/// Row: another target of the same sensor.
+pub const FURTHER: &str = "further target";
+/// Leads to the page where further targets are changed.
+pub const CHANGE_FURTHER: &str = "in Verify";
+/// What it leads to.
+pub const CHANGE_FURTHER_HINT: &str = "Named, used and removed in Verify, which judges the calibration on them";
+
+/// What the six numbers are.
+#[must_use]
+pub fn rough_mounting_hint([a, b, c]: [&str; 3]) -> String {
+    format!(
+        "Roughly where the sensor is on the flange: x y z in mm, then {a} {b} {c} in degrees, with blanks between them. The methods for plates start from it."
+    )
+}
+
+/// Another count of numbers than belongs there.
+#[must_use]
+pub fn numbers_missing(found: usize, needed: usize) -> String {
+    format!("found {found} number{}, needed {needed} with blanks between them", super::plural(found))
+}
+
+/// A further target, and what is known of it.
+#[must_use]
+pub fn further(further: &FurtherTarget) -> String {
+    let used = further.stations.iter().filter(|station| station.enabled).count();
+    let figures = super::verify::further_figures(&further.target, used, further.stations.len());
+    let Known { point_in_base_mm, angle_deg, pitch_mm, height_mm, diameter_mm } = further.known;
+    let touched = point_in_base_mm.map(|point| {
+        let [x, y, z] = [point.x, point.y, point.z].map(|value| digits::plain(value, 3));
+        format!("touched at {x}, {y}, {z} mm")
+    });
+    let size = |name: &str, value: Option<f64>, unit: &str| value.map(|value| format!("{name} {value}{unit}"));
+    let known = [
+        touched,
+        size("angle", angle_deg, "°"),
+        size("pitch", pitch_mm, " mm"),
+        size("height", height_mm, " mm"),
+        size("diameter", diameter_mm, " mm"),
+    ];
+    let parts: Vec<String> = std::iter::once(figures).chain(known.into_iter().flatten()).collect();
+    format!("{}: {}", further.name, parts.join(" · "))
+}
+
 /// Hint in the empty field: nothing is stated.
 pub const EXACT: &str = "exact";
 /// Leads to the page where it is changed.

@@ -110,6 +110,8 @@ pub const RMS: &str = "RMS / mm";
 pub const ANGLE: &str = "angle p–q";
 /// Head of a column.
 pub const GAP: &str = "gap / mm";
+/// Title of the card with the figures.
+pub const DISTANCES_TABLE: &str = "Distances of the points from the lines and the plane";
 /// What the distances are measured from.
 pub const DISTANCES_OF: &str = "each edge's line and the plane are fitted freely to the points";
 /// Beside a calibration on its own data.
@@ -233,6 +235,8 @@ pub fn matrix_difference(shift: &[String; 3], rotation_deg: &str, at_point_mm: &
 
 /// Title of the card.
 pub const PASTED: &str = "A matrix from elsewhere: is it a calibration?";
+/// What a screen reader calls its field.
+pub const PASTED_FIELD: &str = "Numbers of the matrix";
 /// What it is for.
 pub const PASTE_HINT: &str = "Paste a matrix from a paper, another program or the controller: it is checked for being a rotation, and can be \
 judged on the data of this session beside the others.";

@@ -73,7 +73,11 @@ pub fn warning_message(warning: &Warning) -> String {
 pub const fn warning_remedy(warning: &Warning) -> &'static str {
     match warning {
         Warning::FewStations { .. } => "Add stations with other orientations.",
-        Warning::FewEdgePoints { .. } => "Add points on this edge, at other places and with other orientations.",
+        Warning::FewEdgePoints { num_p, num_q, recommended } => match (*num_p < *recommended, *num_q < *recommended) {
+            (true, false) => "Add points on edge p, at other places and with other orientations.",
+            (false, true) => "Add points on edge q, at other places and with other orientations.",
+            _ => "Add points on both edges, at other places and with other orientations.",
+        },
         Warning::OtherMinimum { .. } => "Say roughly how the sensor is mounted, or add points with other orientations.",
         Warning::LittleRotation { .. } => "Add stations tilted by ±20° or more about two axes.",
         Warning::NearlyOneAxis { .. } => "Add stations tilted about an axis across it.",

@@ -19,6 +19,8 @@ pub enum Columns {
     EdgePoints,
     /// The same without edges, of a tip.
     Tips,
+    /// Profiles, points and depth, of a scan.
+    Scans,
 }
 
 /// What the list tells the panel.
@@ -118,6 +120,11 @@ fn head(ui: &mut Ui, columns: Columns) {
             (X_RIGHT, text::POINT_X, text::POINT_HINT),
             (Z_RIGHT, text::POINT_Z, text::POINT_HINT),
         ],
+        Columns::Scans => [
+            (STEPS_RIGHT, text::PROFILES, ""),
+            (RADIUS_RIGHT, text::POINTS, text::POINTS_HINT),
+            (RMS_RIGHT, text::DEPTH, text::DEPTH_HINT),
+        ],
         Columns::Tips => {
             [(EDGE_RIGHT, "", ""), (X_RIGHT, text::POINT_X, text::TIP_HINT), (Z_RIGHT, text::POINT_Z, text::TIP_HINT)]
         }
@@ -176,6 +183,20 @@ fn point_cells(first: String, point_mm: Option<[f64; 2]>) -> [(f32, String); 3] 
     [(EDGE_RIGHT, first), (X_RIGHT, x), (Z_RIGHT, z)]
 }
 
+fn scan_cells(first: String, captures: &[CaptureRow]) -> [(f32, String); 3] {
+    let lines = || captures.iter().filter_map(|capture| capture.scan);
+    let num_points = (lines().count() > 0).then(|| lines().map(|line| line.num_valid).sum::<usize>());
+    let points = num_points.map_or_else(|| figure(None, 0), |num| num.to_string());
+    [(STEPS_RIGHT, first), (RADIUS_RIGHT, points), (RMS_RIGHT, figure(depth_mm(captures), 1))]
+}
+
+/// From the nearest to the farthest point of some profiles.
+fn depth_mm(captures: &[CaptureRow]) -> Option<f64> {
+    let ranges = captures.iter().filter_map(|capture| Some(capture.scan?.range_mm?.z_mm));
+    let [low, high] = ranges.reduce(|[low, high], [near, far]| [low.min(near), high.max(far)])?;
+    Some(high - low)
+}
+
 fn figure(value: Option<f64>, decimals: usize) -> String {
     value.map_or_else(|| "–".to_owned(), |value| widgets::fixed(value, decimals))
 }
@@ -221,6 +242,7 @@ fn station_line(
                     row.edge.map_or_else(String::new, |edge| edge_name(edge).to_owned()),
                     row.captures.iter().find_map(|capture| capture.point_mm),
                 ),
+                Columns::Scans => scan_cells(row.captures.len().to_string(), &row.captures),
             },
             problem: row.problem.as_deref(),
             is_enabled: row.is_enabled,
@@ -228,7 +250,10 @@ fn station_line(
     );
     let palette = theme::palette(ui);
     let color = if row.is_enabled { palette.text } else { palette.text_dim };
-    let label_right = if columns == Columns::Arcs { STEPS_RIGHT - 0.12 } else { EDGE_RIGHT - 0.08 };
+    let label_right = match columns {
+        Columns::Arcs | Columns::Scans => STEPS_RIGHT - 0.12,
+        Columns::EdgePoints | Columns::Tips => EDGE_RIGHT - 0.08,
+    };
     let clip = Rect::from_min_max(rect.min, pos2(rect.left() + label_right * rect.width(), rect.bottom()));
     ui.painter().with_clip_rect(clip.intersect(ui.clip_rect())).text(
         rect.left_center() + vec2(24.0, 0.0),
@@ -273,6 +298,7 @@ fn capture_line(
             cells: match columns {
                 Columns::Arcs => arc_cells((capture_idx + 1).to_string(), row.section_radius_mm, row.rms_mm),
                 Columns::EdgePoints | Columns::Tips => point_cells((capture_idx + 1).to_string(), row.point_mm),
+                Columns::Scans => scan_cells((capture_idx + 1).to_string(), std::slice::from_ref(row)),
             },
             problem: row.problem.as_deref(),
             is_enabled: station.is_enabled,

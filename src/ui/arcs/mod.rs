@@ -5,6 +5,8 @@ mod list;
 pub mod model;
 mod panel;
 pub mod profile;
-mod spread;
+mod scan;
+pub mod spread;
+mod strip;
 
 pub use panel::{ArcsState, show};

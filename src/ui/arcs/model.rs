@@ -5,7 +5,7 @@ use crate::calibrate::{self, Edge, Method, Sweep, SweepPoint, solution_of};
 use crate::fit::line::Line;
 use crate::fit::{ArcFit, Circle, CircleMethod, EdgeFit, Feature, Flank, PointClass};
 use crate::geometry::Profile;
-use crate::session::{Reading, Session, Target};
+use crate::session::{Reading, ScanLine, Session, Target};
 use crate::text::arcs as text;
 
 /// A capture in the list.
@@ -19,6 +19,8 @@ pub struct CaptureRow {
     pub point_mm: Option<[f64; 2]>,
     /// What was found there.
     pub feature: Option<Feature>,
+    /// What a profile of a scan holds.
+    pub scan: Option<ScanLine>,
     /// What is wrong with it, in words.
     pub problem: Option<String>,
 }
@@ -52,7 +54,11 @@ pub fn station_rows(session: &Session, results: Option<&Results>) -> Vec<Station
         .map(|(station_idx, station)| {
             let captures: Vec<CaptureRow> = (0..station.captures.len())
                 .map(|capture_idx| {
-                    capture_row(results.and_then(|results| results.measured.reading(station_idx, capture_idx)))
+                    let measured = results.map(|results| &*results.measured);
+                    match measured.and_then(|measured| measured.scan_line(station_idx, capture_idx)) {
+                        Some(line) => scan_row(line),
+                        None => capture_row(measured.and_then(|measured| measured.reading(station_idx, capture_idx))),
+                    }
                 })
                 .collect();
             let sweep = results.and_then(|results| sweep_of(results, station_idx));
@@ -85,6 +91,12 @@ fn capture_row(reading: Option<&calibrate::Reading>) -> CaptureRow {
         None => {}
     }
     row
+}
+
+/// Every point of a scan counts; that there is none is said.
+fn scan_row(line: &ScanLine) -> CaptureRow {
+    let problem = line.range_mm.is_none().then(|| text::EMPTY_PROFILE.to_owned());
+    CaptureRow { scan: Some(*line), problem, ..CaptureRow::default() }
 }
 
 fn pooled_rms(captures: &[CaptureRow]) -> Option<f64> {
@@ -162,6 +174,8 @@ pub enum Found {
     Section(SectionModel),
     /// An edge, corner, step or tip.
     Edge(EdgeModel),
+    /// A line over a workpiece, of which every point counts.
+    Scan(ScanLine),
 }
 
 /// A profile with what was found in it.
@@ -223,6 +237,23 @@ pub fn profile_model(
         Some(calibrate::Reading::Refused(refusal)) => (Err(refusal.to_string()), [].as_slice()),
         Some(calibrate::Reading::Point(_)) | None => (Err(text::NOT_MEASURED.to_owned()), [].as_slice()),
     };
+    let class_of = |point_idx: usize| classes.get(point_idx).copied().unwrap_or(PointClass::Unused);
+    drawn(profile, found, class_of, ball_radius_mm)
+}
+
+/// A line over a workpiece, for drawing.
+#[must_use]
+pub fn scan_model(profile: &Profile, line: &ScanLine) -> ProfileModel {
+    let found = line.range_mm.map_or_else(|| Err(text::EMPTY_PROFILE.to_owned()), |_| Ok(Found::Scan(*line)));
+    drawn(profile, found, |_| PointClass::Inlier, None)
+}
+
+fn drawn(
+    profile: &Profile,
+    found: Result<Found, String>,
+    class_of: impl Fn(usize) -> PointClass,
+    ball_radius_mm: Option<f64>,
+) -> ProfileModel {
     let distance_mm: Box<dyn Fn(f64, f64) -> f64> = match &found {
         Ok(Found::Section(section)) => {
             let circle = section.circle;
@@ -233,14 +264,14 @@ pub fn profile_model(
                 edge.flanks.iter().filter_map(|flank| Line::through(flank.ends_mm[0], flank.ends_mm[1])).collect();
             Box::new(move |x, z| nearest(lines.iter().map(|line| line.distance_mm([x, z]))))
         }
-        Err(_) => Box::new(|_, _| f64::NAN),
+        Ok(Found::Scan(_)) | Err(_) => Box::new(|_, _| f64::NAN),
     };
     let points: Vec<ProfilePoint> = profile
         .valid_points()
         .map(|(point_idx, x_mm, z_mm)| ProfilePoint {
             x_mm,
             z_mm,
-            class: classes.get(point_idx).copied().unwrap_or(PointClass::Unused),
+            class: class_of(point_idx),
             residual_um: distance_mm(x_mm, z_mm) * 1000.0,
         })
         .collect();
@@ -351,12 +382,15 @@ pub fn capture_view(
     let capture = session.stations.get(station_idx)?.captures.get(capture_idx)?;
     Some(match &capture.reading {
         Reading::Point(point) => CaptureView::Point([point.x, point.y, point.z]),
-        Reading::Profile(profile) => CaptureView::Profile(profile_model(
-            profile,
-            results.and_then(|results| results.measured.reading(station_idx, capture_idx)),
-            ball_radius_mm(session),
-            method,
-        )),
+        Reading::Profile(profile) => {
+            let measured = results.map(|results| &*results.measured);
+            let reading = measured.and_then(|measured| measured.reading(station_idx, capture_idx));
+            let line = measured.and_then(|measured| measured.scan_line(station_idx, capture_idx));
+            CaptureView::Profile(line.map_or_else(
+                || profile_model(profile, reading, ball_radius_mm(session), method),
+                |line| scan_model(profile, line),
+            ))
+        }
     })
 }
 

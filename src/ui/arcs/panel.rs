@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::rc::Rc;
 
-use egui::{Align, ComboBox, Frame, Key, Layout, Margin, Modifiers, ScrollArea, Ui, UiBuilder};
+use egui::{Frame, Key, Margin, Modifiers, ScrollArea, Ui, UiBuilder};
 
 use crate::app::{Document, Results};
 use crate::calibrate::Sweep;
@@ -11,12 +11,12 @@ use crate::fit::CircleMethod;
 use crate::session::Target;
 use crate::text::arcs as text;
 use crate::text::edges::feature_name;
-use crate::ui::figures::{std_text, with_std};
+use crate::ui::figures::std_text;
 use crate::ui::{PanelContext, Selection, theme, widgets};
 
 use super::list::Columns;
-use super::model::{self, CaptureView, EdgeModel, Found, StationRow};
-use super::{curve, list, profile, spread};
+use super::model::{self, CaptureView, Found, StationRow};
+use super::{curve, list, profile, scan, spread, strip};
 
 /// Width of the list, points.
 const LIST_WIDTH: f32 = 184.0;
@@ -24,10 +24,6 @@ const LIST_WIDTH: f32 = 184.0;
 const SIDE_BY_SIDE_FROM: f32 = 560.0;
 /// Height of each card when they stand above each other.
 const STACKED_HEIGHT: f32 = 420.0;
-/// Height of the strip above the plots.
-const STRIP_HEIGHT: f32 = 44.0;
-/// Width of the word before the step buttons and of these.
-const STEPS_WIDTH: f32 = 190.0;
 /// Height of the strip below the plots: two lines of text.
 const BOTTOM_HEIGHT: f32 = 62.0;
 
@@ -145,7 +141,8 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut ArcsState) 
     let columns = match document.session.target {
         Target::RightAnglePlate => Columns::EdgePoints,
         Target::Point => Columns::Tips,
-        Target::Ball { .. } | Target::Workpiece | Target::Rgbd { .. } => Columns::Arcs,
+        Target::Workpiece => Columns::Scans,
+        Target::Ball { .. } | Target::Rgbd { .. } => Columns::Arcs,
     };
     let hovered_in_list = widgets::card_with_height(
         &mut left,
@@ -218,12 +215,9 @@ fn plots(
     let view = state.view(document, results, selection.station_idx, shown_capture);
     let is_out_of_date = results.is_some_and(|results| results.revision < document.data_revision);
     let is_of_arcs = matches!(document.session.target, Target::Ball { .. });
-    let note = match view.as_deref() {
-        Some(CaptureView::Profile(model::ProfileModel { found: Ok(Found::Edge(edge)), .. })) => Some(edge_words(edge)),
-        view => shift_words(view, state.fit),
-    };
+    let note = strip::note(view.as_deref(), state.fit);
     let fit = is_of_arcs.then_some(&mut state.fit);
-    top_strip(ui, station, sweep, selection, fit, note.as_deref(), is_out_of_date);
+    strip::show(ui, station, sweep, selection, fit, note.as_deref(), is_out_of_date);
 
     let bottom_height = sweep.map_or(0.0, |_| BOTTOM_HEIGHT + theme::GAP);
     let height = ui.available_height() - bottom_height;
@@ -242,7 +236,7 @@ fn plots(
         if is_of_arcs {
             curve_card(&mut right, height, station, sweep, ball_radius_mm, selection, state, hovered_in_list);
         } else {
-            spread::card(&mut right, height, &document.session.target, rows, selection, &mut state.is_curve_fitted);
+            points_card(&mut right, height, &document.session.target, rows, selection, &mut state.is_curve_fitted);
         }
         ui.advance_cursor_after_rect(area.with_max_y(area.top() + height));
         bottom_strip(ui, sweep);
@@ -260,7 +254,7 @@ fn plots(
                 curve_card(ui, STACKED_HEIGHT, station, sweep, ball_radius_mm, selection, state, hovered_in_list);
             } else {
                 let target = &document.session.target;
-                spread::card(ui, STACKED_HEIGHT, target, rows, selection, &mut state.is_curve_fitted);
+                points_card(ui, STACKED_HEIGHT, target, rows, selection, &mut state.is_curve_fitted);
             }
             bottom_strip(ui, sweep);
         });
@@ -270,96 +264,20 @@ fn plots(
     }
 }
 
-fn top_strip(
+/// Beside a profile without a curve: all profiles of its scan, or all points of the target.
+fn points_card(
     ui: &mut Ui,
-    station: &StationRow,
-    sweep: Option<&Sweep>,
+    height: f32,
+    target: &Target,
+    rows: &[StationRow],
     selection: &mut Selection,
-    fit: Option<&mut CircleMethod>,
-    note: Option<&str>,
-    is_out_of_date: bool,
+    is_fitted: &mut bool,
 ) {
-    widgets::card(
-        ui,
-        "",
-        |_| {},
-        |ui| {
-            Frame::new().inner_margin(Margin::symmetric(12, 8)).show(ui, |ui| {
-                ui.horizontal_wrapped(|ui| {
-                    ui.set_min_height(STRIP_HEIGHT - 16.0);
-                    let is_of_arcs = fit.is_some();
-                    if let Some(fit) = fit {
-                        let label = ui.label(text::FIT);
-                        ComboBox::from_id_salt("arcs fit")
-                            .selected_text(text::circle_method(*fit))
-                            .width(148.0)
-                            .show_ui(ui, |ui| {
-                                for method in CircleMethod::ALL {
-                                    ui.selectable_value(fit, method, text::circle_method(method));
-                                }
-                            })
-                            .response
-                            .labelled_by(label.id);
-                    }
-                    steps(ui, if is_of_arcs { text::STEP } else { text::PROFILE }, station, selection);
-                    if let Some(note) = note {
-                        ui.label(theme::dim(ui, note));
-                    }
-                    if let Some(sweep) = sweep {
-                        let angle_deg = sweep.travel_off_normal_rad.to_degrees();
-                        ui.label(theme::dim(ui, text::travel_off_normal(angle_deg)));
-                    }
-                    if is_out_of_date {
-                        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                            ui.label(theme::dim(ui, text::OUT_OF_DATE).color(theme::palette(ui).warn));
-                        });
-                    }
-                });
-            });
-        },
-    );
-}
-
-fn steps(ui: &mut Ui, name: &str, station: &StationRow, selection: &mut Selection) {
-    let num_steps = station.captures.len();
-    // In a narrow window the buttons stay together, at the price of the word before them.
-    if ui.available_size_before_wrap().x > STEPS_WIDTH {
-        ui.add_space(8.0);
-        ui.label(theme::dim(ui, name));
+    if *target == Target::Workpiece {
+        scan::card(ui, height, &rows[selection.station_idx], selection, is_fitted);
+    } else {
+        spread::card(ui, height, target, rows, selection, is_fitted);
     }
-    ui.scope(|ui| {
-        ui.spacing_mut().button_padding.x = 8.0;
-        let step_to = |ui: &mut Ui, is_possible: bool, sign: &str, name: &str| {
-            let button = ui.add_enabled(is_possible, egui::Button::new(sign)).on_hover_text(name);
-            button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, is_possible, name));
-            button.clicked()
-        };
-        if step_to(ui, selection.capture_idx > 0, "‹", text::PREVIOUS_STEP) {
-            selection.capture_idx -= 1;
-        }
-        ui.label(widgets::number_text(text::step_of(selection.capture_idx + 1, num_steps)));
-        if step_to(ui, selection.capture_idx + 1 < num_steps, "›", text::NEXT_STEP) {
-            selection.capture_idx += 1;
-        }
-    });
-}
-
-/// What another fit than the robust one changes.
-fn shift_words(view: Option<&CaptureView>, fit: CircleMethod) -> Option<String> {
-    match view {
-        Some(CaptureView::Profile(model::ProfileModel { found: Ok(Found::Section(section)), .. }))
-            if fit != CircleMethod::Robust =>
-        {
-            Some(profile::shift_words(section))
-        }
-        _ => None,
-    }
-}
-
-/// What was found, where, and how well it is known.
-fn edge_words(edge: &EdgeModel) -> String {
-    let [x, z] = [0, 1].map(|axis| with_std(edge.point_mm[axis], edge.std_mm[axis]));
-    text::edge_found(feature_name(edge.feature), &x, &z)
 }
 
 fn profile_card(
@@ -380,10 +298,11 @@ fn profile_card(
         ui.spacing_mut().interact_size.y = 22.0;
         ui.spacing_mut().button_padding = egui::vec2(8.0, 2.0);
         ui.spacing_mut().item_spacing.x = 4.0;
-        // Where nothing was found all points are shown anyway.
-        let near = found.map(|found| match found {
-            Found::Section(_) => (text::ARC_ONLY, text::ARC_ONLY_HINT),
-            Found::Edge(edge) => (feature_name(edge.feature), text::EDGE_ONLY_HINT),
+        // Where nothing was found, or all points count, all are shown anyway.
+        let near = found.and_then(|found| match found {
+            Found::Section(_) => Some((text::ARC_ONLY, text::ARC_ONLY_HINT)),
+            Found::Edge(edge) => Some((feature_name(edge.feature), text::EDGE_ONLY_HINT)),
+            Found::Scan(_) => None,
         });
         if let Some((near_name, near_hint)) = near {
             let whole_hint = text::whole_profile_hint(target);

@@ -44,7 +44,7 @@ pub fn show(ui: &mut Ui, model: &ProfileModel, shows_whole: bool, is_fitted: &mu
         let middle = match &model.found {
             Ok(Found::Section(section)) => section.circle.x_mm,
             Ok(Found::Edge(edge)) => edge.point_mm[0],
-            Err(_) => 0.0,
+            Ok(Found::Scan(_)) | Err(_) => 0.0,
         };
         strip_extent.x = [middle - 1.0, middle + 1.0];
         let height = ui.available_height();
@@ -85,7 +85,9 @@ fn entries(ui: &Ui, model: &ProfileModel) -> Vec<LegendEntry> {
     let mut entries = Vec::new();
     let mut add = |glyph, color, text| entries.push(LegendEntry { glyph, color, text });
     let circle = MarkerShape::Circle;
-    if model.found.is_ok() {
+    if let Ok(Found::Scan(line)) = &model.found {
+        add(LegendGlyph::Solid(circle), theme::INLIER, text::points(line.num_valid, line.num_points));
+    } else if model.found.is_ok() {
         add(LegendGlyph::Solid(circle), theme::INLIER, text::inliers(model.count(PointClass::Inlier)));
         let num_outliers = model.count(PointClass::Outlier);
         if num_outliers > 0 {
@@ -106,7 +108,7 @@ fn entries(ui: &Ui, model: &ProfileModel) -> Vec<LegendEntry> {
         Ok(Found::Edge(edge)) if !edge.flanks.is_empty() => {
             add(LegendGlyph::Line, fit_color(), text::flanks(edge.flanks.len()).to_owned());
         }
-        Ok(Found::Edge(_)) | Err(_) => {}
+        Ok(Found::Edge(_) | Found::Scan(_)) | Err(_) => {}
     }
     entries
 }

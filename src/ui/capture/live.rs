@@ -8,8 +8,10 @@ use egui::{Color32, RichText, Ui, UiBuilder, vec2};
 use crate::app::cell::LiveProfile;
 use crate::calibrate::Reading;
 use crate::device::LinkState;
-use crate::fit::CircleMethod;
+use crate::fit::{CircleMethod, Found};
+use crate::text::arcs::edge_found;
 use crate::text::capture as words;
+use crate::text::edges::feature_name;
 use crate::ui::arcs::curve::{self, CurveLook};
 use crate::ui::arcs::model::{Curve, ProfileModel, profile_model};
 use crate::ui::arcs::profile;
@@ -18,6 +20,7 @@ use crate::ui::figures::with_std;
 use crate::ui::theme;
 use crate::ui::widgets::{card_with_height, fixed, nothing};
 
+use super::edges;
 use super::model::{SearchCurve, search_curve, steady};
 use super::panel::Desk;
 
@@ -32,7 +35,11 @@ pub fn show(ui: &mut Ui, height: f32, desk: &mut Desk<'_>) {
     let mut left = ui.new_child(UiBuilder::new().max_rect(left));
     live_card(&mut left, height, desk);
     let mut right = ui.new_child(UiBuilder::new().max_rect(right.with_min_x(right.left() + theme::GAP)));
-    curve_card(&mut right, height, desk);
+    if desk.view.is_of_edges() {
+        edges::spread(&mut right, height, desk);
+    } else {
+        curve_card(&mut right, height, desk);
+    }
     ui.allocate_rect(area, egui::Sense::hover());
 }
 
@@ -68,7 +75,7 @@ fn live_card(ui: &mut Ui, height: f32, desk: &mut Desk<'_>) {
             ui.multiply_opacity(theme::PAST_OPACITY);
         }
         let model = desk.state.profile_of(live, ball_radius_mm);
-        arc_line(ui, live);
+        found_line(ui, live);
         let extent = profile::extent(&model, true);
         let steady = steady(desk.state.view, [extent.x, extent.y]);
         desk.state.view = Some(steady);
@@ -80,22 +87,33 @@ fn live_card(ui: &mut Ui, height: f32, desk: &mut Desk<'_>) {
     }
 }
 
-/// Radius, angle and noise, in the line above the plot; the centre stands in it.
-fn arc_line(ui: &mut Ui, live: &LiveProfile) {
+/// What was found, or why nothing was, in the line above the plot.
+fn found_line(ui: &mut Ui, live: &LiveProfile) {
     egui::Frame::new().inner_margin(egui::Margin { left: 12, right: 12, top: 6, bottom: 0 }).show(ui, |ui| {
-        let Ok(arc) = &live.arc else {
-            let line = format!("! {}", words::NO_ARC);
-            ui.label(RichText::new(line).font(theme::number_font()).color(theme::palette(ui).warn));
-            return;
+        let um = |std_mm: f64| fixed(std_mm * 1000.0, 1);
+        let (line, short) = match &live.found {
+            Ok(Found::Arc(arc)) => {
+                let radius = with_std(arc.circle.radius_mm, arc.std_mm()[2]);
+                let angle_deg = fixed(arc.angle_rad.to_degrees(), 0);
+                let line = words::arc(&radius, &angle_deg, &um(arc.point_std_mm));
+                (line, words::arc_short(&radius, &angle_deg))
+            }
+            Ok(Found::Edge(edge)) => {
+                let [x, z] = [0, 1].map(|axis| with_std(edge.point_mm[axis], edge.std_mm()[axis]));
+                let short = edge_found(feature_name(edge.feature), &x, &z);
+                (words::edge_line(&short, &um(edge.point_std_mm)), short)
+            }
+            Err(refusal) => {
+                let line = format!("! {}", words::sentence(&refusal.to_string()));
+                ui.add(egui::Label::new(RichText::new(line).color(theme::palette(ui).warn)).truncate());
+                return;
+            }
         };
-        let radius = with_std(arc.circle.radius_mm, arc.std_mm()[2]);
-        let angle_deg = fixed(arc.angle_rad.to_degrees(), 0);
-        let line = words::arc(&radius, &angle_deg, &fixed(arc.point_std_mm * 1000.0, 1));
         let whole = ui.painter().layout_no_wrap(line.clone(), theme::number_font(), Color32::PLACEHOLDER);
         if whole.size().x <= ui.available_width() {
             ui.label(RichText::new(line).font(theme::number_font()));
         } else {
-            let short = RichText::new(words::arc_short(&radius, &angle_deg)).font(theme::number_font());
+            let short = RichText::new(short).font(theme::number_font());
             ui.add(egui::Label::new(short).truncate()).on_hover_text(line);
         }
     });
@@ -105,19 +123,16 @@ impl super::panel::CaptureState {
     /// Made once a profile: frames come more often than profiles.
     fn profile_of(&mut self, live: &LiveProfile, ball_radius_mm: Option<f64>) -> Rc<ProfileModel> {
         let profile = &live.reading.profile;
-        if let Some((known, has_arc, model)) = &self.profile
+        if let Some((known, has_target, model)) = &self.profile
             && Arc::ptr_eq(known, profile)
-            && *has_arc == live.arc.is_ok()
+            && *has_target == live.found.is_ok()
             && model.ball_radius_mm == ball_radius_mm
         {
             return Rc::clone(model);
         }
-        let reading = match &live.arc {
-            Ok(arc) => Reading::Arc(Arc::clone(arc)),
-            Err(refusal) => Reading::Refused(refusal.clone().into()),
-        };
+        let reading = Reading::from(live.found.clone());
         let model = Rc::new(profile_model(profile, Some(&reading), ball_radius_mm, CircleMethod::Robust));
-        self.profile = Some((Arc::clone(profile), live.arc.is_ok(), Rc::clone(&model)));
+        self.profile = Some((Arc::clone(profile), live.found.is_ok(), Rc::clone(&model)));
         model
     }
 

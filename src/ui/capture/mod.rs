@@ -1,6 +1,7 @@
 //! Step 2: the live cell. Connection, live profile, safety strip, search, next station, run, replay.
 
 mod connection;
+mod edges;
 mod fields;
 mod live;
 mod machine;

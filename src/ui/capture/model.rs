@@ -1,7 +1,7 @@
 //! What the capture panel shows and offers, made without egui from the live cell and the open session.
 
-use crate::app::Workbench;
 use crate::app::cell::{CellCommand, CellSettings, CellView};
+use crate::app::{Results, Workbench};
 use crate::calibrate::SweepPoint;
 use crate::calibrate::verdict::GOOD_UP_TO_MM;
 use crate::device::safety::MOST_ROTATION_SPEED_DEG_S;
@@ -9,8 +9,9 @@ use crate::device::search::SearchPoint;
 use crate::device::{LinkState, Readiness, RobotReport, SearchPhase, SearchReport};
 use crate::geometry::{Base, Flange, PoseNotation, Transform};
 use crate::plan::{Plan, PlannedStation};
-use crate::session::{Reading, Session};
+use crate::session::{Edge, Reading, Session, Target, sought};
 use crate::text::capture as words;
+use crate::text::capture_edges as words_of_edges;
 use crate::text::capture_settings::{self as words_of_settings, problem};
 use crate::ui::arcs::model::{Peak, ball_radius_mm};
 use crate::ui::widgets::fixed;
@@ -28,7 +29,14 @@ pub struct View<'a> {
     pub outlook: Option<Outlook>,
     /// Whether the mounting that is remembered was given for another robot than the one that is connected.
     pub has_other_mounting: bool,
+    /// What the methods made of the session.
+    pub results: Option<&'a Results>,
 }
+
+/// So many captures an edge make a calibration that can be trusted ...
+pub const FEWEST_ON_EDGE: usize = 6;
+/// ... and so many of a tip.
+pub const FEWEST_TIPS: usize = 4;
 
 /// How well the calibration is known, and what it takes to be called good.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,6 +84,7 @@ impl<'a> View<'a> {
             has_solution,
             outlook: workbench.current_plan().and_then(Outlook::new),
             has_other_mounting: false,
+            results: workbench.results(),
         }
     }
 
@@ -83,6 +92,48 @@ impl<'a> View<'a> {
     #[must_use]
     pub fn ball_radius_mm(&self) -> Option<f64> {
         self.session.and_then(ball_radius_mm)
+    }
+
+    /// What is wrong with the settings for what is measured here; of a ball if there is no session yet.
+    #[must_use]
+    pub fn problems(&self) -> Vec<Problem> {
+        let is_searched = !self.is_plate();
+        let longest_step_mm = is_searched.then(|| self.ball_radius_mm().unwrap_or(f64::INFINITY));
+        problems(&self.cell.settings, longest_step_mm, self.cell.robot.latest.as_ref())
+    }
+
+    /// The session's target, if a calibration is measured on it.
+    #[must_use]
+    pub fn target(&self) -> Option<&'a Target> {
+        self.session.map(|session| &session.target).filter(|target| sought(target, None).is_some())
+    }
+
+    /// Whether that is a right-angle plate.
+    #[must_use]
+    pub fn is_plate(&self) -> bool {
+        self.target() == Some(&Target::RightAnglePlate)
+    }
+
+    /// Whether it is a plate or a tip.
+    #[must_use]
+    pub fn is_of_edges(&self) -> bool {
+        matches!(self.target(), Some(Target::RightAnglePlate | Target::Point))
+    }
+
+    /// Stations that take part, of an edge or of none.
+    #[must_use]
+    pub fn num_on(&self, edge: Option<Edge>) -> usize {
+        let stations = self.session.map_or(&[][..], |session| &session.stations);
+        stations.iter().filter(|station| station.enabled && station.edge == edge).count()
+    }
+
+    /// The edge that has no capture yet, while the next stations are proposed by the first of each edge.
+    #[must_use]
+    pub fn edge_to_begin(&self) -> Option<Edge> {
+        let chosen = self.cell.settings.edge;
+        let edges = if chosen == Edge::P { [Edge::P, Edge::Q] } else { [Edge::Q, Edge::P] };
+        let is_wanted = self.is_plate() && !self.has_solution;
+        edges.into_iter().find(|edge| is_wanted && self.num_on(Some(*edge)) == 0)
     }
 
     /// Stations of the session.
@@ -140,8 +191,10 @@ pub fn is_run_over(cell: &CellView) -> bool {
 #[must_use]
 pub fn refusal(view: &View<'_>, command: &CellCommand) -> Option<&'static str> {
     let cell = view.cell;
-    let moves =
-        matches!(command, CellCommand::FindLargestArc | CellCommand::AcceptProposal | CellCommand::StartRun { .. });
+    let moves = matches!(
+        command,
+        CellCommand::FindLargestArc | CellCommand::FindTip | CellCommand::AcceptProposal | CellCommand::StartRun { .. }
+    );
     let captures = moves || *command == CellCommand::CaptureStation;
     let proposes = matches!(command, CellCommand::ProposeStation | CellCommand::SkipProposal);
     let is_asked = *command == CellCommand::AcceptProposal || proposes;
@@ -152,6 +205,9 @@ pub fn refusal(view: &View<'_>, command: &CellCommand) -> Option<&'static str> {
     if *command == CellCommand::StartReplay {
         return (if is_running(cell) { Some(words::ROUTINE_RUNS) } else { None })
             .or_else(|| (!view.has_profiles()).then_some(words::NO_PROFILES));
+    }
+    if matches!(command, CellCommand::JogToEdge(_)) {
+        return is_running(cell).then_some(words::ROUTINE_RUNS);
     }
     if !(captures || proposes) {
         return None;
@@ -168,9 +224,17 @@ pub fn refusal(view: &View<'_>, command: &CellCommand) -> Option<&'static str> {
     if cell.sensor.state != LinkState::Ready && !proposes {
         return Some(words::NO_PROFILER);
     }
-    let Some(radius_mm) = view.ball_radius_mm() else { return Some(words::NO_BALL_SESSION) };
-    if moves && !problems(&cell.settings, radius_mm, cell.robot.latest.as_ref()).is_empty() {
+    if view.target().is_none() {
+        return Some(words::NO_TARGET_SESSION);
+    }
+    if *command == CellCommand::FindLargestArc && view.ball_radius_mm().is_none() {
+        return Some(words::NO_BALL);
+    }
+    if moves && !view.problems().is_empty() {
         return Some(words::SETTINGS_WRONG);
+    }
+    if (matches!(command, CellCommand::StartRun { .. }) || proposes) && view.edge_to_begin().is_some() {
+        return Some(words_of_edges::BOTH_FIRST);
     }
     if (moves || proposes) && view.doubts_mounting() {
         return Some(words::OTHER_MOUNTING);
@@ -400,9 +464,10 @@ pub struct Problem {
     pub fields: &'static [&'static str],
 }
 
-/// What is wrong with the settings; empty if nothing is.
+/// What is wrong with the settings; empty if nothing is. Steps are to be below the ball's radius; without a longest step
+/// nothing is searched.
 #[must_use]
-pub fn problems(settings: &CellSettings, ball_radius_mm: f64, robot: Option<&RobotReport>) -> Vec<Problem> {
+pub fn problems(settings: &CellSettings, most_step_mm: Option<f64>, robot: Option<&RobotReport>) -> Vec<Problem> {
     const BOX: &[&str] = words_of_settings::SIDES.as_flattened();
     let (search, limits) = (&settings.search, &settings.limits);
     let longest_step_mm = search.step_mm.max(search.coarse_step_mm);
@@ -415,16 +480,18 @@ pub fn problems(settings: &CellSettings, ball_radius_mm: f64, robot: Option<&Rob
             found.push(Problem { sentence, fields });
         }
     };
-    let has_no_direction = search.direction.iter().all(|part| *part == 0.0);
-    check(has_no_direction, problem::NO_DIRECTION, &words_of_settings::PARTS);
-    check(search.max_travel_mm < 2.0 * search.step_mm, problem::LITTLE_TRAVEL, &[words_of_settings::MAX_TRAVEL]);
-    check(search.coarse_step_mm < search.step_mm, problem::COARSE_IS_FINER, &[words_of_settings::COARSE_STEP]);
-    check(longest_step_mm > ball_radius_mm, problem::STEP_BEYOND_BALL, longest_step);
-    check(longest_step_mm > limits.max_move_mm, problem::STEP_TOO_LONG, longest_step);
     let is_above_cap = |speed_mm_s: f64| speed_mm_s > limits.max_speed_mm_s;
     let [transit, step] = [&[words_of_settings::TRANSIT_SPEED], &[words_of_settings::SEARCH_SPEED]];
+    if let Some(most_step_mm) = most_step_mm {
+        let has_no_direction = search.direction.iter().all(|part| *part == 0.0);
+        check(has_no_direction, problem::NO_DIRECTION, &words_of_settings::PARTS);
+        check(search.max_travel_mm < 2.0 * search.step_mm, problem::LITTLE_TRAVEL, &[words_of_settings::MAX_TRAVEL]);
+        check(search.coarse_step_mm < search.step_mm, problem::COARSE_IS_FINER, &[words_of_settings::COARSE_STEP]);
+        check(longest_step_mm > most_step_mm, problem::STEP_BEYOND_BALL, longest_step);
+        check(longest_step_mm > limits.max_move_mm, problem::STEP_TOO_LONG, longest_step);
+        check(is_above_cap(limits.search_speed_mm_s), problem::SEARCH_TOO_FAST, step);
+    }
     check(is_above_cap(limits.transit_speed_mm_s), problem::TRANSIT_TOO_FAST, transit);
-    check(is_above_cap(limits.search_speed_mm_s), problem::SEARCH_TOO_FAST, step);
     // Settings that were kept may be from a time when more was allowed.
     let turns_too_fast = limits.max_rotation_speed_deg_s > MOST_ROTATION_SPEED_DEG_S;
     check(turns_too_fast, problem::TURNS_TOO_FAST, &[words_of_settings::TURN_CAP]);

@@ -11,7 +11,7 @@ use crate::device::{
     DeviceError, Endpoint, ProfileReading, RobotKind, RobotSetup, RoutineEnd, SearchEnd, SensorKind, SensorSetup,
     WorkspaceBox,
 };
-use crate::fit::{ArcOptions, ArcRefusal, extract_arc};
+use crate::fit::{ArcOptions, ArcRefusal, Found, extract_arc};
 use crate::geometry::{PoseConvention, Profile, Vec3};
 use crate::plan::PlannedStation;
 use crate::session::{self, samples};
@@ -39,9 +39,10 @@ fn live(has_arc: bool) -> LiveProfile {
     let z_mm: Vec<_> = x_mm.iter().map(|x| Some(80.0 - (144.0 - x * x).sqrt())).collect();
     let profile = Arc::new(Profile::new(x_mm, &z_mm).expect("valid"));
     let arc = extract_arc(&profile, &ArcOptions { ball_radius_mm: 15.0, profile_std_mm: None }).expect("an arc");
-    let arc = if has_arc { Ok(Arc::new(arc)) } else { Err(ArcRefusal::TooFewPoints { found: 2, needed: 20 }) };
+    let refusal = ArcRefusal::TooFewPoints { found: 2, needed: 20 };
+    let found = if has_arc { Ok(Found::Arc(Arc::new(arc))) } else { Err(refusal.into()) };
     let reading = ProfileReading { profile, trigger_count: 1, received_at: Instant::now() };
-    LiveProfile { reading, arc, rate_hz: 30.0 }
+    LiveProfile { reading, found, rate_hz: 30.0 }
 }
 
 fn connected(readiness: Readiness) -> CellView {
@@ -91,7 +92,7 @@ const RUN: RunView = RunView { num_done: 2, num_failed: 0, num_stations: 8, is_p
 
 /// What the primary button does at a moment.
 fn deed(cell: &CellView, session: Option<&Session>, memory: &CellMemory) -> Option<Deed> {
-    next(&View { cell, session, has_solution: false, outlook: None, has_other_mounting: false }, memory)
+    next(&View { cell, session, has_solution: false, outlook: None, has_other_mounting: false, results: None }, memory)
         .button
         .map(|(_, deed)| deed)
 }
@@ -133,11 +134,20 @@ fn what_only_a_person_can_do_has_no_button_but_words() {
     let not_remote = Readiness::NotReady { found: "T1 mode".to_owned(), remedy: "turn the key to AUTO" };
     let no_arc = CellView { live: Some(live(false)), ..connected(Readiness::Ready) };
     let no_profile = CellView { live: None, ..connected(Readiness::Ready) };
-    for (cell, part) in
-        [(connected(not_remote), "Turn the key to AUTO"), (no_arc, words::now::JOG), (no_profile, words::now::PROFILE)]
-    {
+    for (cell, part) in [
+        (connected(not_remote), "Turn the key to AUTO"),
+        (no_arc, words::now::jog(&Target::ball(15.0))),
+        (no_profile, words::now::PROFILE),
+    ] {
         let next = next(
-            &View { cell: &cell, session: Some(&empty), has_solution: false, outlook: None, has_other_mounting: false },
+            &View {
+                cell: &cell,
+                session: Some(&empty),
+                has_solution: false,
+                outlook: None,
+                has_other_mounting: false,
+                results: None,
+            },
             &memory,
         );
         assert_eq!(next.button, None, "{}", next.sentence);
@@ -150,8 +160,14 @@ fn a_robot_that_only_reads_is_jogged_and_captured() {
     let cell = connected(Readiness::ReadOnly);
     let empty = empty_session();
     assert_eq!(deed(&cell, Some(&empty), &with_addresses()), command(CellCommand::CaptureStation));
-    let view =
-        View { cell: &cell, session: Some(&empty), has_solution: false, outlook: None, has_other_mounting: false };
+    let view = View {
+        cell: &cell,
+        session: Some(&empty),
+        has_solution: false,
+        outlook: None,
+        has_other_mounting: false,
+        results: None,
+    };
     assert_eq!(refusal(&view, &CellCommand::CaptureStation), None);
     assert_eq!(refusal(&view, &CellCommand::Arm(true)), Some(words::ROBOT_ONLY_READS));
     assert_eq!(refusal(&view, &CellCommand::FindLargestArc), Some(words::ROBOT_ONLY_READS));
@@ -171,8 +187,14 @@ fn a_proposal_is_accepted_only_where_it_can_be_gone_to() {
     assert_eq!(deed(&cell(Some(too_far), true), Some(&empty), &memory), command(CellCommand::SkipProposal));
     let asking = CellView { run: Some(RunView { is_asking: true, ..RUN }), ..cell(None, true) };
     assert_eq!(deed(&asking, Some(&empty), &memory), command(CellCommand::AcceptProposal));
-    let view =
-        View { cell: &asking, session: Some(&empty), has_solution: false, outlook: None, has_other_mounting: false };
+    let view = View {
+        cell: &asking,
+        session: Some(&empty),
+        has_solution: false,
+        outlook: None,
+        has_other_mounting: false,
+        results: None,
+    };
     assert_eq!(refusal(&view, &CellCommand::AcceptProposal), None, "the run waits for it");
     assert_eq!(refusal(&view, &CellCommand::FindLargestArc), Some(words::ROUTINE_RUNS));
     assert!(is_running(&asking), "stop ends a run that asks");
@@ -192,6 +214,7 @@ fn a_replay_goes_on_or_is_ended() {
         has_solution: false,
         outlook: None,
         has_other_mounting: false,
+        results: None,
     };
     assert_eq!(refusal(&view, &CellCommand::StartReplay), None);
     let empty = empty_session();
@@ -213,7 +236,14 @@ fn a_broken_link_is_tried_again_at_once_and_told_of_in_one_place() {
         (CellView { sensor, ..ready.clone() }, sensor_setup.map(CellCommand::ConnectSensor)),
         (CellView { robot, is_practice: true, ..ready }, None),
     ] {
-        let view = View { cell: &cell, session: None, has_solution: false, outlook: None, has_other_mounting: false };
+        let view = View {
+            cell: &cell,
+            session: None,
+            has_solution: false,
+            outlook: None,
+            has_other_mounting: false,
+            results: None,
+        };
         let next = next(&view, &with_addresses());
         assert_eq!(next.button.map(|(_, deed)| deed), expected.map(Deed::Cell));
         assert!(!next.sentence.contains(&error.to_string()), "{}", next.sentence);
@@ -235,8 +265,14 @@ fn a_mounting_of_another_robot_is_asked_about_before_anything_goes_by_it() {
         assert_eq!(memory.has_mounting_of_other(&other), is_other, "{other:?}");
     }
     let (cell, empty) = (armed(mounted(connected(Readiness::Ready))), empty_session());
-    let view =
-        View { cell: &cell, session: Some(&empty), has_solution: false, outlook: None, has_other_mounting: true };
+    let view = View {
+        cell: &cell,
+        session: Some(&empty),
+        has_solution: false,
+        outlook: None,
+        has_other_mounting: true,
+        results: None,
+    };
     assert!(!view.knows_mounting());
     let next = next(&view, &memory);
     assert_eq!(next.button.map(|(_, deed)| deed), Some(Deed::KeepMounting));
@@ -255,8 +291,14 @@ fn the_switch_is_remembered_after_a_run() {
         [(Some(RUN), true, true), (Some(over), true, true), (Some(over), false, false), (None, true, false)]
     {
         let cell = CellView { is_armed, run, ..ready.clone() };
-        let view =
-            View { cell: &cell, session: Some(&empty), has_solution: false, outlook: None, has_other_mounting: false };
+        let view = View {
+            cell: &cell,
+            session: Some(&empty),
+            has_solution: false,
+            outlook: None,
+            has_other_mounting: false,
+            results: None,
+        };
         let next = next(&view, &with_addresses());
         let disarm = Deed::Cell(CellCommand::Arm(false));
         assert_eq!(next.other.is_some_and(|(_, deed)| deed == disarm), reminds, "{run:?}");
@@ -285,7 +327,7 @@ fn the_outlook_counts_the_planned_stations_up_to_good() {
 #[test]
 fn wrong_settings_are_told_and_keep_the_robot_still() {
     let usual = CellSettings::default();
-    assert!(problems(&usual, 15.0, None).is_empty());
+    assert!(problems(&usual, Some(15.0), None).is_empty());
     let mut wrong = usual;
     wrong.search.direction = [0.0; 3];
     wrong.search.step_mm = 20.0;
@@ -306,7 +348,7 @@ fn wrong_settings_are_told_and_keep_the_robot_still() {
         problem::EMPTY_BOX,
     ];
     let told = |settings, robot| -> Vec<_> {
-        problems(settings, 15.0, robot).into_iter().map(|problem| problem.sentence).collect()
+        problems(settings, Some(15.0), robot).into_iter().map(|problem| problem.sentence).collect()
     };
     assert_eq!(told(&wrong, None), expected);
     let mut boxed = usual;
@@ -314,8 +356,14 @@ fn wrong_settings_are_told_and_keep_the_robot_still() {
     assert_eq!(told(&boxed, Some(&report(Readiness::Ready))), [problem::OUTSIDE_BOX]);
     let cell = CellView { settings: boxed, ..armed(connected(Readiness::Ready)) };
     let empty = empty_session();
-    let view =
-        View { cell: &cell, session: Some(&empty), has_solution: false, outlook: None, has_other_mounting: false };
+    let view = View {
+        cell: &cell,
+        session: Some(&empty),
+        has_solution: false,
+        outlook: None,
+        has_other_mounting: false,
+        results: None,
+    };
     assert_eq!(refusal(&view, &CellCommand::FindLargestArc), Some(words::SETTINGS_WRONG));
     assert_eq!(next(&view, &with_addresses()).button, None);
 }
@@ -443,7 +491,14 @@ fn a_capture_from_a_watched_folder_asks_for_a_file() {
     {
         let cell = CellView { activity: Activity::Settling, watched_folder, ..connected(Readiness::Ready) };
         let next = next(
-            &View { cell: &cell, session: Some(&empty), has_solution: false, outlook: None, has_other_mounting: false },
+            &View {
+                cell: &cell,
+                session: Some(&empty),
+                has_solution: false,
+                outlook: None,
+                has_other_mounting: false,
+                results: None,
+            },
             &memory,
         );
         assert_eq!(next.sentence, expected);

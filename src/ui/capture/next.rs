@@ -2,10 +2,12 @@
 
 use crate::app::cell::{Activity, CellCommand, CellView};
 use crate::device::{LinkState, Readiness, SensorKind};
+use crate::session::{Edge, Target};
 use crate::text::capture as words;
+use crate::text::capture_edges as words_of_edges;
 
 use super::memory::CellMemory;
-use super::model::{View, is_run_over, problems};
+use super::model::{View, is_run_over};
 
 /// Something that a button of the panel asks for.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,7 +74,7 @@ pub fn next(view: &View<'_>, memory: &CellMemory) -> Next {
     if is_run_over(cell) && cell.proposal.is_none() {
         return Next::offer(words::now::COMPARE, words::COMPARE, Deed::Compare).reminding_of_switch(cell);
     }
-    let Some(radius_mm) = view.ball_radius_mm() else {
+    let Some(target) = view.target() else {
         let sentence = if view.session.is_some() { words::now::OTHER_TARGET } else { words::now::SESSION };
         return Next::offer(sentence, words::NEW_SESSION, Deed::NewSession);
     };
@@ -81,7 +83,7 @@ pub fn next(view: &View<'_>, memory: &CellMemory) -> Next {
     if let Some(Readiness::NotReady { found, remedy }) = readiness {
         return Next::wait(words::not_ready(found, remedy));
     }
-    if let Some(problem) = problems(&cell.settings, radius_mm, cell.robot.latest.as_ref()).first() {
+    if let Some(problem) = view.problems().first() {
         return Next::wait(words::now::settings(problem.sentence));
     }
     if let Some(proposal) = &cell.proposal {
@@ -91,11 +93,12 @@ pub fn next(view: &View<'_>, memory: &CellMemory) -> Next {
             (Some(_), true) => Next::command(words::now::SKIP, words::ANOTHER, CellCommand::SkipProposal),
         };
     }
-    if live.arc.is_err() {
-        return Next::wait(words::now::JOG);
+    if live.found.is_err() {
+        return Next::wait(words::now::jog(target));
     }
     if readiness == Some(&Readiness::ReadOnly) {
-        return Next::command(words::now::CAPTURE, words::CAPTURE, CellCommand::CaptureStation);
+        let sentence = words::now::capture(target, cell.settings.edge);
+        return Next::command(sentence, words::capture_name(target), CellCommand::CaptureStation);
     }
     if view.doubts_mounting() {
         return Next::offer(words::OTHER_MOUNTING, words::KEEP_MOUNTING, Deed::KeepMounting)
@@ -104,14 +107,38 @@ pub fn next(view: &View<'_>, memory: &CellMemory) -> Next {
     if view.num_stations() > 0 && !view.knows_mounting() {
         return Next::offer(words::now::MOUNT, words::SET_MOUNTING, Deed::ShowMounting);
     }
+    if let Some(edge) = view.edge_to_begin() {
+        return begin_edge(cell, edge);
+    }
     if !cell.is_armed {
-        return Next::command(words::now::ARM, words::ARM, CellCommand::Arm(true));
+        return Next::command(words::now::arm(target), words::ARM, CellCommand::Arm(true));
     }
     if view.knows_mounting() {
         let start = CellCommand::StartRun { num_stations: memory.num_stations.0 };
         return Next::command(words::now::RUN, words::START_RUN, start).reminding_of_switch(cell);
     }
+    if view.is_plate() {
+        let sentence = words::now::capture(target, cell.settings.edge);
+        return Next::command(sentence, words::capture_name(target), CellCommand::CaptureStation);
+    }
+    if *target == Target::Point {
+        return Next::command(words_of_edges::READY_TO_FIND, words_of_edges::FIND, CellCommand::FindTip)
+            .reminding_of_switch(cell);
+    }
     Next::command(words::now::FIND, words::FIND, CellCommand::FindLargestArc).reminding_of_switch(cell)
+}
+
+/// The first capture of an edge is taken where the operator has brought the line onto it.
+fn begin_edge(cell: &CellView, edge: Edge) -> Next {
+    if cell.settings.edge == edge {
+        let sentence = words::now::first_on_edge(edge);
+        return Next::command(sentence, words::capture_name(&Target::RightAnglePlate), CellCommand::CaptureStation);
+    }
+    let sentence = words::now::other_edge(edge);
+    if cell.is_practice {
+        return Next::command(sentence, words_of_edges::jog_to(edge), CellCommand::JogToEdge(edge));
+    }
+    Next::wait(sentence)
 }
 
 fn next_while_running(view: &View<'_>) -> Option<Next> {
@@ -183,7 +210,7 @@ fn next_connection(view: &View<'_>, memory: &CellMemory) -> Option<Next> {
             let sentence = if is_nothing_connected { words::now::BEGIN } else { words::now::ENTER_ROBOT };
             Next::offer(sentence, words::CONNECT_ROBOT, Deed::Enter(words::ROBOT_HOST))
         };
-        let practise = Deed::Cell(CellCommand::Practise);
+        let practise = Deed::Cell(CellCommand::Practise(None));
         return Some(if is_nothing_connected { next.or(words::PRACTISE_SHORT, practise) } else { next });
     }
     if *sensor == LinkState::Off {

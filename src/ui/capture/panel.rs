@@ -20,7 +20,7 @@ use super::memory::CellMemory;
 use super::model::{SearchCurve, View};
 use super::mounting::MountingDraft;
 use super::next::Deed;
-use super::{connection, live, machine, settings, strip, work};
+use super::{connection, edges, live, machine, settings, strip, work};
 
 /// Width of the column at the left, points.
 const LEFT_WIDTH: f32 = 304.0;
@@ -157,7 +157,11 @@ pub fn show_view(
         let below = machine::HEIGHT + work::height(ui.available_width()) + 2.0 * theme::GAP;
         let height = (area.height() - below).max(LEAST_PLOT_HEIGHT).floor();
         live::show(ui, height, &mut desk);
-        machine::show(ui, &desk);
+        if desk.view.is_of_edges() {
+            edges::show(ui, &mut desk);
+        } else {
+            machine::show(ui, &desk);
+        }
         work::show(ui, &mut desk);
     });
     ui.advance_cursor_after_rect(area);

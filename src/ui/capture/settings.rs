@@ -13,7 +13,6 @@ use crate::ui::theme;
 use crate::ui::widgets::{card, fixed, split_row};
 
 use super::fields::{FIELD_HEIGHT, FIELD_WIDTH, Fields, Number, hint, remark, section};
-use super::model::problems;
 use super::mounting::{self, DIRECTIONS, FURTHEST_MM};
 use super::next::Deed;
 use super::panel::Desk;
@@ -28,8 +27,7 @@ const SIDE_WIDTH: f32 = 84.0;
 pub fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     let mut settings = desk.view.cell.settings;
     let mut fields = std::mem::take(&mut desk.state.fields);
-    let radius_mm = desk.view.ball_radius_mm().unwrap_or(f64::INFINITY);
-    let problems = problems(&settings, radius_mm, desk.view.cell.robot.latest.as_ref());
+    let problems = desk.view.problems();
     fields.mark(problems.iter().flat_map(|problem| problem.fields).copied().collect());
     card(
         ui,
@@ -44,9 +42,11 @@ pub fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
                     hint(ui, words::IN_USE);
                 }
                 let summary = search_summary(&settings);
-                section(ui, words::SEARCH, &summary, None, |ui| {
-                    ui.add_enabled_ui(is_free, |ui| search(ui, &mut fields, &mut settings));
-                });
+                if !desk.view.is_plate() {
+                    section(ui, words::SEARCH, &summary, None, |ui| {
+                        ui.add_enabled_ui(is_free, |ui| search(ui, &mut fields, &mut settings));
+                    });
+                }
                 let limits = &settings.limits;
                 let summary = words::limits_summary(
                     &fixed(limits.max_speed_mm_s, 0),

@@ -5,7 +5,9 @@ use egui::{Align, Frame, Label, Layout, Margin, ProgressBar, Ui, UiBuilder, vec2
 use crate::app::cell::{CellCommand, Proposal, StationRoutine};
 use crate::calibrate::verdict::GOOD_UP_TO_MM;
 use crate::device::{MotionRefusal, RoutineEnd};
+use crate::session::Target;
 use crate::text::capture as words;
+use crate::text::capture_edges as words_of_edges;
 use crate::text::cell::reason_of_end;
 use crate::ui::figures::std_text;
 use crate::ui::theme;
@@ -84,6 +86,8 @@ fn ask(ui: &mut Ui, desk: &mut Desk<'_>, label: &str, name: &str, hint: &str, co
 
 fn station(ui: &mut Ui, desk: &mut Desk<'_>) {
     let num_stations = desk.view.num_stations();
+    let target = desk.view.target();
+    let is_of_edges = desk.view.is_of_edges();
     card_with_height(
         ui,
         words::STATION,
@@ -92,16 +96,21 @@ fn station(ui: &mut Ui, desk: &mut Desk<'_>) {
         |ui| {
             body(ui, |ui| {
                 ui.with_layout(Layout::top_down_justified(Align::Center), |ui| {
-                    ask(ui, desk, words::FIND, words::FIND, words::FIND_HINT, CellCommand::FindLargestArc);
-                    ask(
-                        ui,
-                        desk,
-                        words::CAPTURE_SHORT,
-                        words::CAPTURE,
-                        words::CAPTURE_HINT,
-                        CellCommand::CaptureStation,
-                    );
+                    match target {
+                        Some(Target::RightAnglePlate) => {}
+                        Some(Target::Point) => {
+                            let (find, hint) = (words_of_edges::FIND, words_of_edges::FIND_HINT);
+                            ask(ui, desk, find, find, hint, CellCommand::FindTip);
+                        }
+                        _ => ask(ui, desk, words::FIND, words::FIND, words::FIND_HINT, CellCommand::FindLargestArc),
+                    }
+                    let name = target.map_or(words::CAPTURE, words::capture_name);
+                    ask(ui, desk, words::CAPTURE_SHORT, name, words::CAPTURE_HINT, CellCommand::CaptureStation);
                 });
+                let live = desk.view.cell.live.as_ref();
+                if is_of_edges && live.is_some_and(|live| live.found.is_err()) {
+                    remark(ui, "!", words_of_edges::NOT_SEEN, theme::palette(ui).warn);
+                }
                 hint(ui, &words::num_stations(num_stations));
                 if let Some(outlook) = desk.view.outlook.filter(|_| !model::is_running(desk.view.cell)) {
                     hint(ui, &words::outlook(&std_text(outlook.std_mm), outlook.num_to_good, GOOD_UP_TO_MM));
@@ -196,12 +205,16 @@ fn run_settings(ui: &mut Ui, desk: &mut Desk<'_>) {
     desk.state.fields.row(ui, words::RUN_STATIONS, "", field);
     desk.state.fields.remarks(ui, |name| name == words::RUN_STATIONS);
     let mut settings = desk.view.cell.settings;
+    // Of a plate it is always one profile.
+    let has_choice = !desk.view.is_plate();
+    let search = if desk.view.is_of_edges() { words_of_edges::SEARCHED_TIP } else { words::LARGEST_ARC };
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = theme::GAP;
-        for (routine, name) in
-            [(StationRoutine::LargestArc, words::LARGEST_ARC), (StationRoutine::FixedPoint, words::FIXED_POINT)]
+        for (routine, name) in [(StationRoutine::LargestArc, search), (StationRoutine::FixedPoint, words::FIXED_POINT)]
         {
-            ui.radio_value(&mut settings.routine, routine, name);
+            if has_choice {
+                ui.radio_value(&mut settings.routine, routine, name);
+            }
         }
     });
     ui.checkbox(&mut settings.asks_before_motion, words::ASKS);

@@ -4,6 +4,7 @@
 
 mod legend;
 mod marks;
+mod orbit;
 
 use egui::{Id, Painter, Pos2, Rangef, Rect, Response, Sense, Ui, UiBuilder, pos2, vec2};
 use egui_plot::{AxisHints, GridInput, GridMark, Plot, PlotPoint, PlotTransform};
@@ -12,6 +13,7 @@ use crate::ui::{theme, widgets};
 
 pub use legend::{LegendEntry, LegendGlyph, legend};
 pub use marks::{arrow, dashed_circle, dashed_line, dotted_line, ellipse, error_bar, marker, thinned};
+pub use orbit::Orbit;
 
 /// Grid lines of the y axis stand at least this far apart, points.
 const GRID_SPACING: f32 = 28.0;

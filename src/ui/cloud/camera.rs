@@ -1,15 +1,15 @@
-//! From where a cloud is seen: from all sides, without perspective, z up.
+//! How a cloud is seen: from where, what is in the middle, and how large.
 
 use egui::{Pos2, Rect, Vec2, pos2};
 use nalgebra::Vector3;
 
+use crate::ui::charts::Orbit;
+
 /// The view of a cloud. Points are offsets from the cloud's origin, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Turn about z, rad.
-    yaw: f32,
-    /// Height over the horizon, rad.
-    pitch: f32,
+    /// The direction of view.
+    orbit: Orbit,
     /// What is in the middle of the picture.
     centre: Vector3<f32>,
     /// Length of a millimetre on the screen, points.
@@ -18,14 +18,12 @@ pub struct Camera {
 
 impl Default for Camera {
     fn default() -> Self {
-        Self { yaw: -0.9, pitch: 0.55, centre: Vector3::zeros(), scale: 1.0 }
+        Self { orbit: Orbit::new(-0.9, 0.55), centre: Vector3::zeros(), scale: 1.0 }
     }
 }
 
 /// Part of the picture that a fitted cloud takes.
 const FILL: f32 = 0.82;
-/// Radians of a turn a point of dragging.
-const TURN: f32 = 0.008;
 /// Nobody needs to see closer or more, points a mm.
 const SCALES: [f32; 2] = [1e-3, 1e4];
 
@@ -33,11 +31,8 @@ impl Camera {
     /// Right, down and into the picture.
     #[must_use]
     pub fn axes(&self) -> [Vector3<f32>; 3] {
-        let (sin_yaw, cos_yaw) = self.yaw.sin_cos();
-        let (sin_pitch, cos_pitch) = self.pitch.sin_cos();
-        let into = -Vector3::new(cos_pitch * cos_yaw, cos_pitch * sin_yaw, sin_pitch);
-        let right = Vector3::new(-sin_yaw, cos_yaw, 0.0);
-        [right, into.cross(&right), into]
+        let [right, up, towards] = self.orbit.axes().map(Vector3::cast::<f32>);
+        [right, -up, -towards]
     }
 
     /// Length of a millimetre on the screen, points.
@@ -70,8 +65,7 @@ impl Camera {
 
     /// Turns as if the cloud were dragged.
     pub fn turn(&mut self, drag: Vec2) {
-        self.yaw = (self.yaw - drag.x * TURN).rem_euclid(std::f32::consts::TAU);
-        self.pitch = (self.pitch + drag.y * TURN).clamp(-std::f32::consts::FRAC_PI_2, std::f32::consts::FRAC_PI_2);
+        self.orbit.turn(drag);
     }
 
     /// Moves the cloud along with the pointer.
@@ -90,11 +84,10 @@ impl Camera {
 
     /// Looks along an axis: from above, from the front (along y), or from the right (along −x).
     pub const fn look_along(&mut self, axis: usize) {
-        const QUARTER: f32 = std::f32::consts::FRAC_PI_2;
-        (self.yaw, self.pitch) = match axis {
-            2 => (-QUARTER, QUARTER),
-            1 => (-QUARTER, 0.0),
-            _ => (0.0, 0.0),
+        self.orbit = match axis {
+            2 => Orbit::ABOVE,
+            1 => Orbit::FRONT,
+            _ => Orbit::RIGHT,
         };
     }
 
@@ -132,23 +125,11 @@ pub(super) const fn corner_of(rect: Rect, right: f32, up: f32) -> Pos2 {
 
 #[cfg(test)]
 mod tests {
-    use egui::{Rect, vec2};
+    use egui::Rect;
 
     use super::*;
 
     const RECT: Rect = Rect { min: pos2(10.0, 20.0), max: pos2(810.0, 620.0) };
-
-    #[test]
-    fn axes_are_perpendicular_and_z_points_up() {
-        let mut camera = Camera::default();
-        camera.turn(vec2(33.0, 21.0));
-        let [right, down, into] = camera.axes();
-        assert!((right.cross(&down) - into).norm() < 1e-6);
-        assert!(down.z < 0.0 && into.z < 0.0);
-        camera.look_along(2);
-        let [right, down, _] = camera.axes();
-        assert!((right - Vector3::x()).norm() < 1e-6 && (down + Vector3::y()).norm() < 1e-6, "{right} {down}");
-    }
 
     #[test]
     fn a_zoom_keeps_the_place_under_the_pointer() {

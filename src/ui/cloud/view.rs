@@ -63,9 +63,12 @@ pub struct CloudScene<'a> {
 pub struct CloudResponse {
     /// The point that was clicked, in the base, mm.
     pub picked_mm: Option<Vec3>,
-    /// The rectangle that was drawn: right and down in the base, and corners along them from the cloud's origin, mm.
-    pub rectangle: Option<(Vec3, Vec3, [[f64; 2]; 4])>,
+    /// The rectangle that was drawn.
+    pub rectangle: Option<CutOut>,
 }
+
+/// A rectangle of a picture: right and down in the base, and corners along them from the cloud's origin, mm.
+pub type CutOut = (Vec3, Vec3, [[f64; 2]; 4]);
 
 /// What the view remembers between frames.
 #[derive(Default)]
@@ -117,7 +120,7 @@ impl CloudView {
         let before = self.camera;
         let mut answer = CloudResponse::default();
         self.take_pointer(ui, &response, scene, rect, &mut answer);
-        self.take_keys(ui, &response, rect);
+        self.take_keys(ui, &response, scene, rect, &mut answer);
         let Some(seen) = &mut self.seen else { return answer };
         let is_moving = self.camera != before || response.dragged();
         let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
@@ -174,6 +177,15 @@ impl CloudView {
         if response.has_focus() {
             let focus = Stroke::new(1.0, theme::palette(ui).accent);
             painter.rect_stroke(rect.shrink(1.0), f32::from(theme::RADIUS), focus, StrokeKind::Inside);
+            // What Enter would take.
+            match scene.tool {
+                Tool::Turn => {}
+                Tool::Point => cross(&painter, rect.center(), focus),
+                Tool::Rectangle => {
+                    let faint = Stroke::new(1.0, focus.color.gamma_multiply(0.5));
+                    painter.rect_stroke(middle_of(rect), 0.0, faint, StrokeKind::Middle);
+                }
+            }
         }
         answer
     }
@@ -242,11 +254,7 @@ impl CloudView {
             && let (Some(from), Some(to)) = (self.drag_from.take(), response.interact_pointer_pos())
             && (to - from).abs().min_elem() > 3.0
         {
-            let [right, down, _] = self.camera.axes().map(Vector3::cast::<f64>);
-            let drawn = Rect::from_two_pos(from, to);
-            let corners = [drawn.left_top(), drawn.right_top(), drawn.right_bottom(), drawn.left_bottom()];
-            let corners = corners.map(|corner| self.camera.unproject(corner, rect).map(f64::from));
-            answer.rectangle = Some((right, down, corners));
+            answer.rectangle = Some(self.cut_out(Rect::from_two_pos(from, to), rect));
         }
         if let Some(pointer) = response.hover_pos() {
             let (scrolled, pinched) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
@@ -263,7 +271,14 @@ impl CloudView {
         }
     }
 
-    fn take_keys(&mut self, ui: &Ui, response: &Response, rect: Rect) {
+    fn take_keys(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        scene: &CloudScene<'_>,
+        rect: Rect,
+        answer: &mut CloudResponse,
+    ) {
         if !response.has_focus() {
             return;
         }
@@ -293,6 +308,20 @@ impl CloudView {
         if pressed(Key::Home) || pressed(Key::F) {
             self.fit(rect.size());
         }
+        if pressed(Key::Enter) {
+            match scene.tool {
+                Tool::Turn => {}
+                Tool::Point => answer.picked_mm = self.nearest(rect.center(), rect, scene.cloud),
+                Tool::Rectangle => answer.rectangle = Some(self.cut_out(middle_of(rect), rect)),
+            }
+        }
+    }
+
+    /// What a rectangle of the picture cuts out of the cloud.
+    fn cut_out(&self, drawn: Rect, rect: Rect) -> CutOut {
+        let [right, down, _] = self.camera.axes().map(Vector3::cast::<f64>);
+        let corners = [drawn.left_top(), drawn.right_top(), drawn.right_bottom(), drawn.left_bottom()];
+        (right, down, corners.map(|corner| self.camera.unproject(corner, rect).map(f64::from)))
     }
 
     /// The point that is seen nearest to the pointer; of several there, the one in front.
@@ -308,6 +337,17 @@ impl CloudView {
         });
         near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, idx)| cloud.point_mm(idx as usize))
     }
+}
+
+/// The rectangle that Enter takes.
+fn middle_of(rect: Rect) -> Rect {
+    Rect::from_center_size(rect.center(), rect.size() / 3.0)
+}
+
+fn cross(painter: &egui::Painter, at: Pos2, stroke: Stroke) {
+    const ARM: f32 = 7.0;
+    painter.hline(at.x - ARM..=at.x + ARM, at.y, stroke);
+    painter.vline(at.x, at.y - ARM..=at.y + ARM, stroke);
 }
 
 impl Seen {

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use egui::{Align, Context, Frame, Id, Key, Layout, Modal, Modifiers, ProgressBar, ScrollArea, Stroke, Ui, vec2};
 
 use crate::app::{Command, ImportDraft, ImportInto, Progress, Workbench};
-use crate::session::import::{ImportError, ImportOptions, Imported};
+use crate::session::import::{ImportError, ImportOptions, Imported, check_edges};
 use crate::session::table::number::parse_number;
-use crate::session::{Edit, Reading, Session, SetupField, Target};
+use crate::session::{Edit, Reading, Session, SetupField, Station, Target};
 use crate::text::import as words;
 use crate::text::shell as shell_words;
 use crate::ui::{theme, widgets};
@@ -67,13 +67,16 @@ impl ImportState {
             commands.push(Command::SetImportOptions(Box::new(options)));
         }
         self.form = Some(form);
+        if outcome.as_ref().is_ok_and(|imported| imported.has_edges()) {
+            self.target = TargetKind::RightAnglePlate;
+        }
         if self.radius.is_empty() && has_only_points(outcome) {
             USUAL_RADIUS_MM.clone_into(&mut self.radius);
         }
     }
 
     /// What a new session is to be, or why it cannot be made yet.
-    fn new_session(&self) -> Result<ImportInto, &'static str> {
+    fn new_session(&self, stations: &[Station]) -> Result<ImportInto, &'static str> {
         let name = self.name.trim().to_owned();
         if name.is_empty() {
             return Err(words::NAME_MISSING);
@@ -83,6 +86,7 @@ impl ImportState {
             TargetKind::RightAnglePlate => Target::RightAnglePlate,
             TargetKind::Point => Target::Point,
         };
+        check_edges(stations, &target).map_err(|_| words::EDGES_OF_NO_PLATE)?;
         Ok(ImportInto::NewSession { name, target })
     }
 
@@ -261,18 +265,21 @@ fn footer(
         Some(imported) if model::has_profiles(imported) => Some(words::PROFILES_ONLY),
         _ => Some(words::NOTHING_READ),
     };
+    let stations = imported.map_or(&[][..], |imported| imported.stations.as_slice());
     let new_session = match imported {
         Some(Imported { session: Some(session), .. }) => {
             Ok(ImportInto::NewSession { name: session.name.clone(), target: session.target.clone() })
         }
-        _ => state.new_session(),
+        _ => state.new_session(stations),
     };
     let new_session = not_ready.map_or(new_session, Err);
     let is_open = workbench.document().is_some();
-    let add = match not_ready {
-        Some(reason) => Err(reason),
-        None if !is_open => Err(words::NOTHING_OPEN),
-        None => Ok(ImportInto::OpenSession),
+    let add = match (not_ready, workbench.document()) {
+        (Some(reason), _) => Err(reason),
+        (None, None) => Err(words::NOTHING_OPEN),
+        (None, Some(document)) => check_edges(stations, &document.session.target)
+            .map(|()| ImportInto::OpenSession)
+            .map_err(|_| words::EDGES_OF_NO_PLATE),
     };
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         let mut made = None;

@@ -5,7 +5,7 @@ use egui::{Align, ComboBox, Layout, RichText, ScrollArea, Sense, Stroke, Ui, UiB
 use crate::app::{Document, Results};
 use crate::calibrate::{self, Method, PlatePoint, Solution, StationSolution};
 use crate::fit::{ArcFit, EdgeFit, PointClass};
-use crate::session::{Reading, Target};
+use crate::session::Reading;
 use crate::text::edges::{edge_name, feature_hint, feature_name};
 use crate::text::methods::method_short_name;
 use crate::text::shell as words;
@@ -34,6 +34,7 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
         match (outcome, results.and_then(|results| results.refusal.as_deref())) {
             (Some(Ok(solution)), _) => solution_section(ui, document, solution),
             (Some(Err(error)), _) => refusal(ui, &error.to_string()),
+            // No failure: the target is none that a calibration is computed from.
             (None, Some(reason)) => {
                 ui.add(egui::Label::new(theme::dim(ui, reason)).wrap());
             }
@@ -82,7 +83,6 @@ fn capture_section(
     let reading = results.and_then(|results| results.measured.reading(station_idx, capture_idx));
     match reading {
         Some(calibrate::Reading::Arc(arc)) => arc_rows(ui, arc, num_points),
-        Some(calibrate::Reading::Refused(_)) if document.session.target == Target::Workpiece => {}
         Some(calibrate::Reading::Refused(reason)) => refusal(ui, &reason.to_string()),
         Some(calibrate::Reading::Point(point)) => {
             let label = words::target_in_sensor(&document.session.target);
@@ -90,6 +90,13 @@ fn capture_section(
         }
         Some(calibrate::Reading::Edge(edge)) => edge_rows(ui, edge, num_points),
         None => {}
+    }
+    if let Some(line) = results.and_then(|results| results.measured.scan_line(station_idx, capture_idx)) {
+        value_row(ui, words::POINTS_USED, words::points_used(line.num_valid, line.num_points));
+        if let Some(range) = line.range_mm {
+            let [near, far] = range.z_mm.map(|end| fixed(end, 2));
+            value_row(ui, words::RANGE_SEEN, words::from_to_mm(&near, &far));
+        }
     }
     if let Some(edge) = station.edge {
         value_row(ui, words::PLATE_EDGE, edge_name(edge));

@@ -28,7 +28,7 @@ pub fn stop() -> Command {
 
 /// Whether a command starts the simulated cell, with a session of its own.
 pub fn is_practise(command: &Command) -> bool {
-    matches!(command, Command::Cell(command) if **command == CellCommand::Practise)
+    matches!(command, Command::Cell(command) if matches!(**command, CellCommand::Practise(_)))
 }
 
 /// Whether a key was pressed that stops the robot, which nothing else gets then: Escape always, the space bar unless it

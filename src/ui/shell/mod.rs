@@ -349,7 +349,7 @@ impl Shell {
             Action::OpenPoints => self.ask_for_paths(Purpose::OpenPoints),
             Action::ChooseCalibration => self.ask_for_paths(Purpose::Calibration),
             Action::ChooseWatchedFolder => self.ask_for_paths(Purpose::WatchedFolder),
-            Action::Practise => commands.push(Command::Cell(Box::new(CellCommand::Practise))),
+            Action::Practise(target) => commands.push(Command::Cell(Box::new(CellCommand::Practise(target)))),
             Action::EndPractice => commands.push(Command::Cell(Box::new(CellCommand::EndPractice))),
             Action::Paste => self.ask_for_clipboard(ctx),
             Action::OpenSample(sample_idx) => commands.push(Command::OpenSample(sample_idx)),

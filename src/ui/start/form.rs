@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use egui::{Align, Align2, ComboBox, Id, Key, Label, Layout, Response, Role, TextEdit, Ui, WidgetInfo, vec2};
 
 use crate::app::{Command, Document};
-use crate::session::{Edit, SetupField, Target, new_gesture};
+use crate::session::{Edit, SetupField, new_gesture};
 use crate::text::start as words;
 use crate::ui::theme;
 use crate::ui::widgets::{number_text, split_row};
@@ -18,6 +18,8 @@ use super::form_model::{Field, MOUNTS, TargetKind};
 
 /// Width of a field for text at most, points.
 const TEXT_WIDTH: f32 = 220.0;
+/// Width of a field for several numbers, points.
+const NUMBERS_WIDTH: f32 = 300.0;
 /// Width of a field for a number, points.
 const NUMBER_WIDTH: f32 = 96.0;
 /// Rows of the notes in sight when they are few.
@@ -43,22 +45,23 @@ pub struct FormState {
 
 impl FormState {
     /// The row of a field: its label at the left, the field and its unit at the right, and what is wrong with it below.
-    pub fn row(&mut self, ui: &mut Ui, document: &Document, field: Field, commands: &mut Vec<Command>) {
-        split_row(ui, field.label(), |ui| {
+    pub fn row(&mut self, ui: &mut Ui, document: &Document, field: Field, commands: &mut Vec<Command>) -> Response {
+        let response = split_row(ui, field.label(), |ui| {
             let unit = unit_column(ui);
             if field.is_text() {
                 let width = TEXT_WIDTH.min(ui.available_width() * 0.66);
-                self.text_field(ui, document, field, width, commands);
+                self.text_field(ui, document, field, width, commands)
             } else {
                 let words = theme::dim(ui, field.unit());
                 let layout = Layout::left_to_right(Align::Center);
                 ui.new_child(egui::UiBuilder::new().max_rect(unit).layout(layout)).label(words);
-                self.number_field(ui, document, field, commands);
+                self.number_field(ui, document, field, commands)
             }
         });
         if let Some(problem) = self.drafts.get(&field).and_then(|draft| draft.problem.as_ref()) {
             problem_line(ui, problem);
         }
+        response
     }
 
     /// A field for text; every stroke goes to the document.
@@ -94,7 +97,13 @@ impl FormState {
         response
     }
 
-    fn number_field(&mut self, ui: &mut Ui, document: &Document, field: Field, commands: &mut Vec<Command>) {
+    fn number_field(
+        &mut self,
+        ui: &mut Ui,
+        document: &Document,
+        field: Field,
+        commands: &mut Vec<Command>,
+    ) -> Response {
         let base = field.text(&document.session);
         if self.drafts.get(&field).is_some_and(|draft| draft.base != base) {
             self.drafts.remove(&field);
@@ -108,13 +117,15 @@ impl FormState {
             (widgets.inactive.bg_stroke, widgets.hovered.bg_stroke) = (bad, bad);
             ui.visuals_mut().selection.stroke = bad;
         }
+        let width =
+            if field.has_several_numbers() { NUMBERS_WIDTH.min(ui.available_width() * 0.75) } else { NUMBER_WIDTH };
         let edit = TextEdit::singleline(&mut text)
             .id(id_of(field))
             .hint_text(number_text(field.hint()))
             .font(theme::number_font())
             .align(Align2::RIGHT_CENTER)
             .margin(vec2(8.0, 3.0))
-            .desired_width(NUMBER_WIDTH);
+            .desired_width(width);
         let response = ui.add(edit);
         name_field(&response, field, &text);
         if response.changed() {
@@ -123,7 +134,7 @@ impl FormState {
             self.drafts.insert(field, Draft { text, base, problem });
         }
         if !response.lost_focus() {
-            return;
+            return response;
         }
         if ui.input(|input| input.key_pressed(Key::Escape)) {
             self.drafts.remove(&field);
@@ -136,6 +147,7 @@ impl FormState {
                 Err(problem) => draft.problem = Some(problem),
             }
         }
+        response
     }
 }
 
@@ -164,12 +176,6 @@ pub fn mount_row(ui: &mut Ui, document: &Document, commands: &mut Vec<Command>) 
             commands.push(setup(SetupField::Mount(mount)));
         }
     });
-}
-
-/// Whether the session is about a ball, whose size is asked for.
-#[must_use]
-pub const fn has_ball(target: &Target) -> bool {
-    matches!(target, Target::Ball { .. })
 }
 
 const fn setup(field: SetupField) -> Command {

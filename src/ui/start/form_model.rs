@@ -1,8 +1,10 @@
 //! The session's own fields as text, and typed text back to an edit.
 
 use crate::calibrate::Mount;
+use crate::geometry::{Transform, Vec3};
 use crate::session::table::parse_number;
-use crate::session::{Edit, Session, SetupField, Target};
+use crate::session::{Edit, Known, Session, SetupField, Target};
+use crate::text::digits::plain;
 use crate::text::start as words;
 
 /// A field that is typed.
@@ -28,6 +30,18 @@ pub enum Field {
     BallRadius,
     /// How well it is known.
     BallRadiusStd,
+    /// Where the tip was touched, three numbers.
+    TouchedPoint,
+    /// The angle between a workpiece's planes, from its certificate.
+    NominalAngle,
+    /// The distance of its teeth.
+    NominalPitch,
+    /// Their height.
+    NominalHeight,
+    /// The diameter of its cylinder or ball.
+    NominalDiameter,
+    /// Roughly how the sensor is mounted, six numbers in the session's convention.
+    RoughMounting,
 }
 
 impl Field {
@@ -45,6 +59,12 @@ impl Field {
             Self::ReferenceDistance => words::REFERENCE_DISTANCE,
             Self::BallRadius => words::BALL_RADIUS,
             Self::BallRadiusStd => words::BALL_RADIUS_STD,
+            Self::TouchedPoint => words::TOUCHED_POINT,
+            Self::NominalAngle => words::NOMINAL_ANGLE,
+            Self::NominalPitch => words::NOMINAL_PITCH,
+            Self::NominalHeight => words::NOMINAL_HEIGHT,
+            Self::NominalDiameter => words::NOMINAL_DIAMETER,
+            Self::RoughMounting => words::ROUGH_MOUNTING,
         }
     }
 
@@ -53,10 +73,34 @@ impl Field {
     pub const fn unit(self) -> &'static str {
         match self {
             Self::Name | Self::Notes | Self::RobotModel | Self::SensorModel => "",
-            Self::OrientationStd => "°",
-            Self::PositionStd | Self::ProfileStd | Self::ReferenceDistance | Self::BallRadius | Self::BallRadiusStd => {
-                "mm"
-            }
+            Self::OrientationStd | Self::NominalAngle => "°",
+            Self::RoughMounting => "mm °",
+            Self::PositionStd
+            | Self::ProfileStd
+            | Self::ReferenceDistance
+            | Self::BallRadius
+            | Self::BallRadiusStd
+            | Self::TouchedPoint
+            | Self::NominalPitch
+            | Self::NominalHeight
+            | Self::NominalDiameter => "mm",
+        }
+    }
+
+    /// Whether several numbers stand in it, with blanks between them.
+    #[must_use]
+    pub const fn has_several_numbers(self) -> bool {
+        matches!(self, Self::TouchedPoint | Self::RoughMounting)
+    }
+
+    /// What a target of this kind has of its own.
+    #[must_use]
+    pub const fn of_target(target: &Target) -> &'static [Self] {
+        match target {
+            Target::Ball { .. } => &[Self::BallRadius, Self::BallRadiusStd],
+            Target::Point => &[Self::TouchedPoint],
+            Target::Workpiece => &[Self::NominalAngle, Self::NominalPitch, Self::NominalHeight, Self::NominalDiameter],
+            Target::RightAnglePlate | Target::Rgbd { .. } => &[],
         }
     }
 
@@ -73,6 +117,8 @@ impl Field {
             Self::Name => words::NO_NAME,
             Self::Notes => words::NOTES_HINT,
             Self::BallRadiusStd => words::EXACT,
+            Self::TouchedPoint => words::TOUCHED_POINT_HINT,
+            Self::RoughMounting => words::ROUGH_MOUNTING_HINT,
             _ => words::NOT_STATED,
         }
     }
@@ -96,6 +142,17 @@ impl Field {
             Self::ReferenceDistance => number(session.sensor.reference_distance_mm),
             Self::BallRadius => number(radius_mm),
             Self::BallRadiusStd => number(radius_std_mm),
+            Self::TouchedPoint => {
+                session.known.point_in_base_mm.map_or_else(String::new, |point| listed(point.as_slice()))
+            }
+            Self::NominalAngle => number(session.known.angle_deg),
+            Self::NominalPitch => number(session.known.pitch_mm),
+            Self::NominalHeight => number(session.known.height_mm),
+            Self::NominalDiameter => number(session.known.diameter_mm),
+            Self::RoughMounting => session.sensor.rough_flange_from_sensor.map_or_else(String::new, |rough| {
+                let angles = session.robot.notation.convention.angles_deg_from_rotation(&rough.rotation());
+                listed(&[rough.translation_mm().as_slice(), &angles].concat())
+            }),
         }
     }
 
@@ -113,7 +170,33 @@ impl Field {
             }
             SetupField::Target(target)
         };
+        let known = |change: &dyn Fn(&mut Known)| {
+            let mut known = session.known;
+            change(&mut known);
+            Edit::SetKnown(known)
+        };
         let field = match self {
+            Self::TouchedPoint => {
+                let point_mm = numbers::<3>(text)?.map(Vec3::from);
+                return checked(known(&|known| known.point_in_base_mm = point_mm), session);
+            }
+            Self::RoughMounting => {
+                let rough = numbers::<6>(text)?.map(|[x, y, z, a, b, c]| {
+                    let rotation = session.robot.notation.convention.rotation_from_angles_deg([a, b, c]);
+                    Transform::from_parts(Vec3::new(x, y, z), rotation)
+                });
+                return checked(Edit::SetRoughMounting(rough), session);
+            }
+            Self::NominalAngle | Self::NominalPitch | Self::NominalHeight | Self::NominalDiameter => {
+                let typed = optional()?;
+                let edit = known(&|known| match self {
+                    Self::NominalAngle => known.angle_deg = typed,
+                    Self::NominalPitch => known.pitch_mm = typed,
+                    Self::NominalHeight => known.height_mm = typed,
+                    _ => known.diameter_mm = typed,
+                });
+                return checked(edit, session);
+            }
             Self::Name => SetupField::Name(text.to_owned()),
             Self::Notes => SetupField::Notes(text.to_owned()),
             Self::RobotModel => SetupField::RobotModel(text.to_owned()),
@@ -131,10 +214,33 @@ impl Field {
                 ball(&|_, radius_std_mm| *radius_std_mm = typed_mm)
             }
         };
-        let edit = Edit::Setup(field);
-        edit.apply(session).map_err(|refusal| refusal.to_string())?;
-        Ok(edit)
+        checked(Edit::Setup(field), session)
     }
+}
+
+/// The edit, if it can be made.
+fn checked(edit: Edit, session: &Session) -> Result<Edit, String> {
+    edit.apply(session).map_err(|refusal| refusal.to_string())?;
+    Ok(edit)
+}
+
+/// Numbers with blanks between them, as they are typed back.
+fn listed(numbers: &[f64]) -> String {
+    /// A touched point and a rough mounting are known less well.
+    const DECIMALS: usize = 4;
+    numbers.iter().map(|number| plain(*number, DECIMALS)).collect::<Vec<_>>().join("  ")
+}
+
+/// So many numbers with blanks or semicolons between them, or none at all.
+fn numbers<const N: usize>(text: &str) -> Result<Option<[f64; N]>, String> {
+    let parts: Vec<&str> =
+        text.split(|c: char| c.is_whitespace() || c == ';').filter(|part| !part.is_empty()).collect();
+    if parts.is_empty() {
+        return Ok(None);
+    }
+    let numbers = parts.iter().map(|part| parse_number(part)).collect::<Result<Vec<f64>, _>>();
+    let numbers = numbers.map_err(|refusal| refusal.to_string())?;
+    numbers.try_into().map(Some).map_err(|_| words::numbers_missing(parts.len(), N))
 }
 
 /// A kind of target to choose.
@@ -214,9 +320,40 @@ mod tests {
             Field::ReferenceDistance,
             Field::BallRadius,
             Field::BallRadiusStd,
+            Field::RoughMounting,
         ] {
             let edit = field.edit(&field.text(&session), &session).expect("valid");
             assert_eq!(edit.apply(&session).as_ref(), Ok(&session), "{field:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_known_of_a_target_and_the_rough_mounting_are_typed_and_taken_back() {
+        let of = Session::new;
+        for (mut session, field, text, shown) in [
+            (of(Target::Point), Field::TouchedPoint, "452,02 -118; 96.5", "452.02  -118  96.5"),
+            (of(Target::Point), Field::TouchedPoint, " ", ""),
+            (of(Target::Workpiece), Field::NominalAngle, "90", "90"),
+            (of(Target::Workpiece), Field::NominalPitch, "15", "15"),
+            (of(Target::Workpiece), Field::NominalHeight, "10,5", "10.5"),
+            (of(Target::Workpiece), Field::NominalDiameter, "", ""),
+            (of(Target::RightAnglePlate), Field::RoughMounting, "10 0 120 1 -2 90", "10  0  120  1  -2  90"),
+            (of(Target::RightAnglePlate), Field::RoughMounting, "", ""),
+        ] {
+            let edit = field.edit(text, &session).expect("valid");
+            session = edit.apply(&session).expect("valid");
+            assert_eq!(field.text(&session), shown, "{field:?}");
+        }
+        for (target, field, text, expected) in [
+            (Target::Point, Field::TouchedPoint, "1 2", "found 2 numbers, needed 3"),
+            (Target::Point, Field::TouchedPoint, "1 2 x", "found"),
+            (Target::Point, Field::TouchedPoint, "1 2 1e9", "found 1000000000, needed a position in mm"),
+            (Target::Workpiece, Field::NominalPitch, "-3", "found -3, needed a part's size in mm"),
+            (Target::Workpiece, Field::NominalAngle, "NaN", "found"),
+            (Target::RightAnglePlate, Field::RoughMounting, "1 2 3 4 5", "found 5 numbers, needed 6"),
+        ] {
+            let refusal = field.edit(text, &of(target)).expect_err(text);
+            assert!(refusal.contains(expected), "{refusal}");
         }
     }
 

@@ -5,6 +5,7 @@ use std::time::SystemTime;
 
 use egui::{Align, Button, Frame, Label, Layout, RichText, Role, TextEdit, Ui, WidgetInfo, vec2};
 
+use crate::app::cell::PRACTICE_PARTS;
 use crate::app::{Command, Recoverable};
 use crate::session::{Edit, Session, SetupField, Target, table::parse_number};
 use crate::text::capture as capture_words;
@@ -110,9 +111,14 @@ pub fn cell(ui: &mut Ui, context: &mut PanelContext<'_>) {
                     if ui.button(capture_words::CONNECT_CELL).clicked() {
                         context.actions.push(Action::GoTo(Step::Capture));
                     }
-                    let practise = ui.button(capture_words::PRACTISE).on_hover_text(capture_words::PRACTISE_HINT);
-                    if practise.clicked() {
-                        context.actions.push(Action::Practise);
+                    // The last one stands at the left.
+                    for part in PRACTICE_PARTS.into_iter().rev() {
+                        let practise = ui.button(capture_words::practise_button(part));
+                        let name = capture_words::practise_on(part);
+                        practise.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
+                        if practise.on_hover_text(capture_words::practise_hint(part)).clicked() {
+                            context.actions.push(Action::Practise(part));
+                        }
                     }
                     ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                         ui.label(theme::strong(capture_words::CELL));

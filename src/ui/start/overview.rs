@@ -13,7 +13,7 @@ use crate::ui::rail::Step;
 use crate::ui::widgets::{card, split_row, value_row};
 use crate::ui::{PanelContext, theme};
 
-use super::form::{FormState, has_ball, mount_row, target_row};
+use super::form::{FormState, mount_row, target_row};
 use super::form_model::Field;
 
 /// Draws the overview: two cards of fields and figures, and the notes below.
@@ -73,17 +73,26 @@ fn setup(ui: &mut Ui, document: &Document, context: &mut PanelContext<'_>, form:
         form.row(ui, document, field, context.commands);
     }
     mount_row(ui, document, context.commands);
+    let rough = form.row(ui, document, Field::RoughMounting, context.commands);
+    rough.on_hover_text(words::rough_mounting_hint(document.session.robot.notation.convention.angle_names));
 }
 
 fn target_and_data(ui: &mut Ui, document: &Document, context: &mut PanelContext<'_>, form: &mut FormState) {
     target_row(ui, document, context.commands);
-    if has_ball(&document.session.target) {
-        for field in [Field::BallRadius, Field::BallRadiusStd] {
-            form.row(ui, document, field, context.commands);
-        }
+    for field in Field::of_target(&document.session.target) {
+        form.row(ui, document, *field, context.commands);
     }
     for (label, value) in data(document) {
         value_row(ui, label, value);
+    }
+    for further in &document.session.further {
+        split_row(ui, words::FURTHER, |ui| {
+            if ui.link(words::CHANGE_FURTHER).on_hover_text(words::CHANGE_FURTHER_HINT).clicked() {
+                context.actions.push(Action::GoTo(Step::Verify));
+            }
+            let figures = words::further(further);
+            ui.add(Label::new(&figures).truncate()).on_hover_text(&figures);
+        });
     }
     let path = document.path.as_deref();
     split_row(ui, words::FILE, |ui| {

@@ -133,7 +133,7 @@ fn table(ui: &mut Ui, rows: &[Row<'_>], shown_idx: Option<usize>, state: &mut Di
     let right = |ui: &mut Ui| {
         ui.label(theme::dim(ui, words::DISTANCES_OF));
     };
-    widgets::card(ui, words::DISTANCES, right, |ui| {
+    widgets::card(ui, words::DISTANCES_TABLE, right, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         let scale = ui.available_width() / PARTS.iter().sum::<f32>();
         let widths = PARTS.map(|part| part * scale);

@@ -154,7 +154,7 @@ fn entry(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut MatricesState)
         .desired_rows(FIELD_ROWS)
         .desired_width(f32::INFINITY);
     let field = ui.add(field);
-    name_field(&field, words::PASTED, &state.pasted);
+    name_field(&field, words::PASTED_FIELD, &state.pasted);
     if field.changed() {
         let is_empty = state.pasted.trim().is_empty();
         state.read = (!is_empty).then(|| {

@@ -4,9 +4,9 @@
 use egui::{Align2, Color32, FontId, Key, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, vec2};
 
 use crate::calibrate::Edge;
-use crate::geometry::{Mat3, Vec3, so3};
+use crate::geometry::{Mat3, Vec3};
 use crate::text::verify as words;
-use crate::ui::charts::arrow;
+use crate::ui::charts::{Orbit, arrow};
 use crate::ui::{theme, widgets};
 use crate::verify::Distances;
 
@@ -15,31 +15,19 @@ use super::marks::Mark;
 /// From where the plate is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Turn about the plate's normal, rad.
-    yaw: f64,
-    /// Height above the plate's plane, rad.
-    pitch: f64,
+    /// About the plate's normal.
+    orbit: Orbit,
     zoom: f64,
 }
 
 impl Default for Camera {
     fn default() -> Self {
-        Self { yaw: -0.62, pitch: 0.62, zoom: 1.0 }
+        Self { orbit: Orbit::new(-0.951, 0.62), zoom: 1.0 }
     }
 }
 
-impl Camera {
-    /// From the plate's frame to x to the right, y up, z towards the eye.
-    fn screen_from_plate(&self) -> Mat3 {
-        let pitched = so3::exp(Vec3::x() * (self.pitch - std::f64::consts::FRAC_PI_2));
-        (pitched * so3::exp(Vec3::z() * self.yaw)).to_rotation_matrix().into_inner()
-    }
-}
-
-/// Turn a point of dragging, rad.
-const TURN_A_POINT: f64 = 0.008;
-/// Turn a press of an arrow key, rad.
-const TURN_A_KEY: f64 = 0.12;
+/// A press of an arrow key turns like a drag by so many points.
+const KEY_STEP: f32 = 12.0;
 /// Deviations are enlarged until the largest is this part of the picture.
 const DEVIATION_PART: f64 = 0.13;
 /// Room between the outermost points and the border of the plane, as a part of their extent.
@@ -61,7 +49,7 @@ struct Scene {
 
 impl Scene {
     fn of(distances: &Distances) -> Self {
-        let centroid = distances.plane.point_mm;
+        let centroid = distances.centroid_mm;
         let up = if distances.plane.normal.z < 0.0 { -distances.plane.normal } else { distances.plane.normal };
         let along = distances.lines[0].direction - up * up.dot(&distances.lines[0].direction);
         let along = along.try_normalize(0.0).unwrap_or_else(Vec3::x);
@@ -157,26 +145,22 @@ pub fn show(ui: &mut Ui, distances: &Distances, mark: &Mark, camera: &mut Camera
 }
 
 fn steer(ui: &Ui, response: &egui::Response, camera: &mut Camera) {
-    let mut turn = Vec2::ZERO;
     if response.dragged() {
-        turn = response.drag_delta();
+        camera.orbit.turn(response.drag_delta());
     }
-    camera.yaw += f64::from(turn.x) * TURN_A_POINT;
-    camera.pitch += f64::from(turn.y) * TURN_A_POINT;
     if response.clicked() {
         response.request_focus();
     }
     if response.has_focus() {
         ui.input(|input| {
-            for (key, yaw, pitch) in [
-                (Key::ArrowLeft, -1.0, 0.0),
-                (Key::ArrowRight, 1.0, 0.0),
-                (Key::ArrowUp, 0.0, 1.0),
-                (Key::ArrowDown, 0.0, -1.0),
+            for (key, step) in [
+                (Key::ArrowLeft, vec2(-KEY_STEP, 0.0)),
+                (Key::ArrowRight, vec2(KEY_STEP, 0.0)),
+                (Key::ArrowUp, vec2(0.0, KEY_STEP)),
+                (Key::ArrowDown, vec2(0.0, -KEY_STEP)),
             ] {
                 if input.key_pressed(key) {
-                    camera.yaw += yaw * TURN_A_KEY;
-                    camera.pitch += pitch * TURN_A_KEY;
+                    camera.orbit.turn(step);
                 }
             }
         });
@@ -187,7 +171,6 @@ fn steer(ui: &Ui, response: &egui::Response, camera: &mut Camera) {
         let zoom = ui.input(egui::InputState::zoom_delta);
         camera.zoom *= f64::from(zoom) * (f64::from(scrolled) * 0.004).exp();
     }
-    camera.pitch = camera.pitch.clamp(-1.55, 1.55);
     camera.zoom = camera.zoom.clamp(0.3, 30.0);
     if response.double_clicked() {
         *camera = Camera::default();
@@ -196,21 +179,20 @@ fn steer(ui: &Ui, response: &egui::Response, camera: &mut Camera) {
 
 /// From the plate's frame to the screen, without perspective: parallel edges stay parallel.
 struct View {
-    screen_from_plate: Mat3,
+    orbit: Orbit,
     centre: Pos2,
     points_a_mm: f64,
 }
 
 impl View {
     fn new(place: Rect, scene: &Scene, camera: &Camera) -> Self {
-        let screen_from_plate = camera.screen_from_plate();
         // As large as the plane fits as it is seen at first, so that turning does not make it grow or shrink.
-        let at_first = Camera::default().screen_from_plate();
+        let at_first = Camera::default().orbit;
         let half =
-            |axis: usize| scene.corners().iter().map(|corner| (at_first * corner)[axis].abs()).fold(1.0, f64::max);
+            |axis: usize| scene.corners().iter().map(|corner| at_first.seen(*corner)[axis].abs()).fold(1.0, f64::max);
         let room = place.shrink2(ROOM_AROUND).size() / 2.0;
         let fitted = (f64::from(room.x.max(1.0)) / half(0)).min(f64::from(room.y.max(1.0)) / half(1));
-        Self { screen_from_plate, centre: place.center(), points_a_mm: fitted * camera.zoom }
+        Self { orbit: camera.orbit, centre: place.center(), points_a_mm: fitted * camera.zoom }
     }
 
     /// Where a point of the plate's frame is on the screen.
@@ -220,7 +202,7 @@ impl View {
 
     #[expect(clippy::cast_possible_truncation, reason = "screen coordinates")]
     fn direction(&self, in_plate: Vec3) -> Vec2 {
-        let seen = self.screen_from_plate * in_plate;
+        let seen = self.orbit.seen(in_plate);
         vec2(seen.x as f32, -seen.y as f32)
     }
 }

@@ -1,6 +1,9 @@
 //! A known point measured many times with every calibration at hand, and the calibrations side by side.
 
-use egui::{Align, Align2, Button, Color32, Frame, Layout, Margin, ScrollArea, Stroke, TextEdit, Ui, WidgetInfo, vec2};
+use egui::{
+    Align, Align2, Button, Color32, Frame, Layout, Margin, ScrollArea, Stroke, TextEdit, Ui, UiBuilder, WidgetInfo,
+    vec2,
+};
 
 use crate::app::Command;
 use crate::geometry::Vec3;
@@ -198,68 +201,97 @@ fn table(ui: &mut Ui, view: &View<'_>, target: &TargetEvidence, state: &Stabilit
             hint(ui, refusal.as_deref().unwrap_or(nothing));
             return;
         }
+        // The labels stay in sight while the figures of many calibrations are scrolled.
+        let area = ui.available_rect_before_wrap();
+        let (left, right) = area.split_left_right_at_x(area.left() + LABEL_WIDTH);
+        let mut left = ui.new_child(UiBuilder::new().max_rect(left));
+        labels(&mut left, &columns, rows);
+        let mut right = ui.new_child(UiBuilder::new().max_rect(right));
         #[expect(clippy::cast_precision_loss, reason = "a handful of columns")]
-        let least = LABEL_WIDTH + LEAST_WIDTH * 3.0 * columns.len() as f32;
-        let width = ui.available_width().max(least);
-        ScrollArea::horizontal().id_salt("stability").auto_shrink([false, true]).show(ui, |ui| {
+        let width = right.available_width().max(LEAST_WIDTH * 3.0 * columns.len() as f32);
+        ScrollArea::horizontal().id_salt("stability").auto_shrink([false, true]).show(&mut right, |ui| {
             ui.set_width(width);
-            ui.spacing_mut().item_spacing.y = 0.0;
-            columns_and_rows(ui, &columns, rows);
+            figures(ui, &columns, rows);
         });
+        ui.advance_cursor_after_rect(left.min_rect().union(right.min_rect()));
     });
 }
 
-fn columns_and_rows(ui: &mut Ui, columns: &[Column<'_>], rows: &[Measurement]) {
+/// Height of the head with the axes: a little lower than that with the calibrations.
+const AXES_HEIGHT: f32 = theme::ROW_HEIGHT - 2.0;
+
+/// The rows below the measurements: label, value, and whether it has a sign.
+type Foot = (&'static str, fn(&Stability) -> Vec3, bool);
+
+fn feet(columns: &[Column<'_>]) -> Vec<Foot> {
+    let mean: Foot = (words::MEAN, |stability| stability.mean_mm, true);
+    let three_delta: Foot = (words::THREE_DELTA, Stability::three_std_mm, false);
+    let is_touched = columns.iter().any(|column| column.stability.is_touched);
+    is_touched.then_some(mean).into_iter().chain([three_delta]).collect()
+}
+
+/// The ground of a row below the measurements.
+fn foot_ground(ui: &Ui) {
+    let rect = egui::Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), theme::ROW_HEIGHT));
+    ui.painter().rect_filled(rect, 0.0, theme::palette(ui).hovered);
+}
+
+/// The column of labels.
+fn labels(ui: &mut Ui, columns: &[Column<'_>], rows: &[Measurement]) {
+    ui.spacing_mut().item_spacing.y = 0.0;
+    RowCells::new(ui, theme::ROW_HEIGHT);
+    RowCells::new(ui, AXES_HEIGHT).head(LABEL_WIDTH, words::NUMBER, Align2::LEFT_CENTER);
+    for measurement in rows {
+        RowCells::new(ui, theme::ROW_HEIGHT).text(LABEL_WIDTH, &measurement.name());
+    }
+    for (label, ..) in feet(columns) {
+        foot_ground(ui);
+        RowCells::new(ui, theme::ROW_HEIGHT).text(LABEL_WIDTH, label);
+    }
+    RowCells::new(ui, theme::ROW_HEIGHT).text(LABEL_WIDTH, words::THREE_DELTA_3D);
+}
+
+/// Three columns of figures a calibration.
+fn figures(ui: &mut Ui, columns: &[Column<'_>], rows: &[Measurement]) {
+    ui.spacing_mut().item_spacing.y = 0.0;
     #[expect(clippy::cast_precision_loss, reason = "a handful of columns")]
-    let width = (ui.available_width() - LABEL_WIDTH) / (3.0 * columns.len() as f32);
+    let width = ui.available_width() / (3.0 * columns.len() as f32);
     let top = ui.cursor().top();
     let mut head = RowCells::new(ui, theme::ROW_HEIGHT);
-    head.head(LABEL_WIDTH, "", Align2::LEFT_CENTER);
     for column in columns {
         let cell = head.next(3.0 * width);
         let ui = head.ui();
         column.mark.paint_in(ui, cell, theme::palette(ui).text);
         head.name(cell, &column.mark.name, None);
     }
-    let mut head = RowCells::new(ui, theme::ROW_HEIGHT - 2.0);
-    head.head(LABEL_WIDTH, words::NUMBER, Align2::LEFT_CENTER);
+    let mut head = RowCells::new(ui, AXES_HEIGHT);
     for _ in columns {
         for axis in ["Δx / mm", "Δy / mm", "Δz / mm"] {
             head.head(width, axis, Align2::RIGHT_CENTER);
         }
     }
-    for (idx, measurement) in rows.iter().enumerate() {
+    for idx in 0..rows.len() {
         let mut cells = RowCells::new(ui, theme::ROW_HEIGHT);
-        cells.text(LABEL_WIDTH, &measurement.name());
         for column in columns {
             let deviation = column.stability.deviations_mm.get(idx).copied().unwrap_or_else(Vec3::zeros);
             vector(&mut cells, width, deviation, true);
         }
     }
-    let fill = theme::palette(ui).hovered;
-    let foot = |ui: &mut Ui, label: &str, values: &dyn Fn(&Stability) -> (Vec3, bool)| {
-        let rect = egui::Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), theme::ROW_HEIGHT));
-        ui.painter().rect_filled(rect, 0.0, fill);
+    for (_, value, is_signed) in feet(columns) {
+        foot_ground(ui);
         let mut cells = RowCells::new(ui, theme::ROW_HEIGHT);
-        cells.text(LABEL_WIDTH, label);
         for column in columns {
-            let (value, is_signed) = values(column.stability);
-            vector(&mut cells, width, value, is_signed);
+            vector(&mut cells, width, value(column.stability), is_signed);
         }
-    };
-    if columns.iter().any(|column| column.stability.is_touched) {
-        foot(ui, words::MEAN, &|stability| (stability.mean_mm, true));
     }
-    foot(ui, words::THREE_DELTA, &|stability| (stability.three_std_mm(), false));
     let mut cells = RowCells::new(ui, theme::ROW_HEIGHT);
-    cells.text(LABEL_WIDTH, words::THREE_DELTA_3D);
     for column in columns {
         cells.next(2.0 * width);
         let value = column.stability.three_std_3d_mm();
         cells.number(width, value, &widgets::fixed(value, 3), Color32::TRANSPARENT);
     }
-    // A hairline between the calibrations.
-    let (left, bottom) = (ui.min_rect().left() + LABEL_WIDTH, ui.cursor().top());
+    // A hairline before each calibration.
+    let (left, bottom) = (ui.min_rect().left(), ui.cursor().top());
     let stroke = Stroke::new(1.0, theme::palette(ui).hairline);
     for number in 0..columns.len() {
         #[expect(clippy::cast_precision_loss, reason = "a handful of columns")]

@@ -8,17 +8,18 @@ use crate::app::cell::{Activity, CellView, StationRoutine};
 use crate::calibrate::SideChoice;
 use crate::device::{
     DeviceError, LinkState, Measurement, RobotKind, Routine, RoutineEnd, RoutineEvent, SearchEnd, SearchReport,
-    StepCapture, Task,
+    SearchSettings, StepCapture, Task,
 };
+use crate::fit::Sought;
 use crate::geometry::{Base, Flange, Profile, Transform};
 use crate::session::edit::{CellValue, free_label};
 use crate::session::model::UnknownFields;
-use crate::session::{Capture, Edit, Place, Reading, Session, SetupField, Station, new_gesture};
+use crate::session::{Capture, Edge, Edit, Place, Reading, Session, SetupField, Station, Target, new_gesture};
 use crate::text::cell as words;
 use crate::text::edits::capture_label;
 
 use super::super::{NoticeKind, Workbench};
-use super::proposals::FoundPeak;
+use super::proposals::{FoundPeak, rigid};
 use super::run::RefusedPose;
 
 /// A routine with the station that it measures.
@@ -31,6 +32,8 @@ pub(super) struct Measuring {
     /// All captures of the station are one step of undo.
     gesture: u64,
     label: String,
+    /// The edge that is seen, of a plate.
+    edge: Option<Edge>,
     go_to: Option<Transform<Base, Flange>>,
     /// Where the robot stood when it began.
     stood_at: Option<Transform<Base, Flange>>,
@@ -79,7 +82,8 @@ impl Workbench {
         self.measure_by_hand(StationRoutine::FixedPoint);
     }
 
-    pub(super) fn find_largest_arc(&mut self) {
+    /// That of a ball's largest arc, or of a tip.
+    pub(super) fn search_here(&mut self) {
         self.measure_by_hand(StationRoutine::LargestArc);
     }
 
@@ -88,9 +92,15 @@ impl Workbench {
             self.notify_of_cell(NoticeKind::Error, words::BUSY.to_owned());
         } else if let Err(reason) = self.measure_station(None, routine) {
             self.notify_of_cell(NoticeKind::Error, reason);
-        } else if routine == StationRoutine::LargestArc {
+        } else if self.search_of(routine).is_some() {
             self.remark_oblique_travel();
         }
+    }
+
+    /// The search that a routine makes of what is measured here; none on a plate, where one profile is enough.
+    pub(super) fn search_of(&self, routine: StationRoutine) -> Option<SearchSettings> {
+        let is_searched = self.sought().is_some_and(|sought| sought.ball().is_some() || sought.is_tip());
+        (is_searched && routine == StationRoutine::LargestArc).then_some(self.cell.view.settings.search)
     }
 
     /// A search from here that is longer than it has to be.
@@ -111,7 +121,7 @@ impl Workbench {
             return Err(words::BUSY.to_owned());
         }
         let Some(document) = &self.document else { return Err(words::NO_SESSION.to_owned()) };
-        let ball = self.ball().ok_or_else(|| words::NOT_A_BALL.to_owned())?;
+        let sought = self.sought().ok_or_else(|| words::NOTHING_TO_CAPTURE.to_owned())?;
         let robot = self.cell.robot.as_ref().ok_or_else(|| words::NO_ROBOT.to_owned())?;
         let sensor = self.cell.sensor.as_ref().ok_or_else(|| words::NO_SENSOR.to_owned())?;
         let now = Instant::now();
@@ -119,23 +129,24 @@ impl Workbench {
         need_ready(sensor.client().link_state(now), words::NO_SENSOR)?;
         let settings = &self.cell.view.settings;
         let latest = self.cell.view.robot.latest.as_ref();
-        if let (StationRoutine::LargestArc, Some(at)) =
-            (routine, go_to.or(latest.map(|report| report.base_from_flange)))
+        if let (Some(search), Some(at)) =
+            (self.search_of(routine), go_to.or(latest.map(|report| report.base_from_flange)))
         {
-            self.check_travel(&at, &settings.search).map_err(|refusal| refusal.to_string())?;
+            self.check_travel(&at, &search).map_err(|refusal| refusal.to_string())?;
         }
-        let task = Task {
-            go_to,
-            measurement: Some(match routine {
-                StationRoutine::LargestArc => Measurement::LargestArc(settings.search),
-                StationRoutine::FixedPoint => Measurement::Profile,
-            }),
-            settle: settings.settle,
-            ball,
-            arming: self.arming(),
+        let measurement = match (routine, &sought) {
+            (StationRoutine::LargestArc, Sought::Arc(ball)) => Measurement::LargestArc(settings.search, *ball),
+            (StationRoutine::LargestArc, Sought::Edge(tip)) if sought.is_tip() => {
+                Measurement::Tip(settings.search, *tip)
+            }
+            // Whoever captures by hand has seen what there is; a run has not.
+            (StationRoutine::LargestArc | StationRoutine::FixedPoint, _) => {
+                Measurement::Profile(go_to.is_some().then_some(sought))
+            }
         };
-        let taken: HashSet<String> = document.session.stations.iter().map(|station| station.label.clone()).collect();
-        let label = free_label(&(taken.len() + 1).to_string(), &taken);
+        let task = Task { go_to, measurement: Some(measurement), settle: settings.settle, arming: self.arming() };
+        let edge = (document.session.target == Target::RightAnglePlate).then_some(settings.edge);
+        let label = next_label(&document.session, edge);
         // What was begun over one connection does not go on over the next.
         let (robot, sensor) = (robot.client().of_this_connection(), sensor.client().of_this_connection());
         self.cell.measuring = Some(Measuring {
@@ -144,6 +155,7 @@ impl Workbench {
             has_left: false,
             gesture: new_gesture(),
             label,
+            edge,
             go_to,
             stood_at: self.cell.view.robot.latest.as_ref().map(|report| report.base_from_flange),
             has_searched: false,
@@ -214,7 +226,7 @@ impl Workbench {
                 label: measuring.label.clone(),
                 enabled: true,
                 side: SideChoice::Auto,
-                edge: None,
+                edge: measuring.edge,
                 captures: vec![capture],
                 unknown: UnknownFields::new(),
             };
@@ -291,7 +303,9 @@ impl Workbench {
         if let RoutineEnd::Searched(SearchEnd::Found { peak_mm, peak_std_mm }) = end {
             self.note_peak(&measuring, *peak_mm, *peak_std_mm);
         }
-        if let RoutineEnd::Searched(SearchEnd::NoArcAtStart { .. } | SearchEnd::ResidualGrew { .. }) = end {
+        if let RoutineEnd::Searched(SearchEnd::NoArcAtStart { .. } | SearchEnd::ResidualGrew { .. })
+        | RoutineEnd::NothingSeen { .. } = end
+        {
             self.leave_out(&measuring);
         }
         match measuring.go_to {
@@ -309,7 +323,7 @@ impl Workbench {
         self.cell.proposing.note_peak(FoundPeak { first_profile: Arc::clone(first_profile), base_from_flange, std_mm });
     }
 
-    /// Captures that show no ball, or one that moved, take no part until somebody has looked.
+    /// Captures that do not show the target, or one that moved, take no part until somebody has looked.
     fn leave_out(&mut self, measuring: &Measuring) {
         let Some(document) = self.document.as_ref().filter(|document| measuring.document_id == Some(document.id))
         else {
@@ -332,8 +346,21 @@ impl CellView {
         let sensor = sensor.and_then(|setup| words::model_of_sensor(setup.kind));
         let robot = robot.map(|make| SetupField::RobotModel(make.to_owned()));
         let sensor = sensor.map(|model| SetupField::SensorModel(model.to_owned()));
-        robot.into_iter().chain(sensor).map(Edit::Setup).collect()
+        let mut edits: Vec<Edit> = robot.into_iter().chain(sensor).map(Edit::Setup).collect();
+        // The methods for a plate begin with it.
+        let is_wanted = session.target == Target::RightAnglePlate && session.sensor.rough_flange_from_sensor.is_none();
+        let mounting = self.settings.mounting.filter(|_| is_wanted);
+        edits.extend(mounting.map(|mounting| Edit::SetRoughMounting(Some(Transform::from_rigid(rigid(&mounting))))));
+        edits
     }
+}
+
+/// A number; on a plate counted by edge, with its letter before it.
+fn next_label(session: &Session, edge: Option<Edge>) -> String {
+    let taken: HashSet<String> = session.stations.iter().map(|station| station.label.clone()).collect();
+    let number = session.stations.iter().filter(|station| station.edge == edge).count() + 1;
+    let letter = edge.map_or("", Edge::symbol);
+    free_label(&format!("{letter}{number}"), &taken)
 }
 
 /// The make that the name of a robot tells, among those that can be connected.

@@ -6,7 +6,8 @@ use crate::calibrate::best_available;
 use crate::device::{Arming, MotionRefusal, RobotReport, SearchSettings};
 use crate::geometry::{Base, Flange, Transform};
 use crate::plan::{
-    Limits, MeasuredStation, Plan, PlanRefusal, PlannedStation, RoughCell, View, next_rough, next_stations,
+    Limits, MeasuredStation, Plan, PlanRefusal, PlannedStation, RoughCell, RoughPlate, SeenEdge, View, next_rough,
+    next_rough_edge, next_stations,
 };
 use crate::text::cell as words;
 
@@ -21,6 +22,9 @@ const NUM_AT_ONCE: usize = 4;
 /// A pose is as good as an avoided one if it is turned against it by less than this, degrees: what was out of reach is so
 /// a little beside it as well.
 const SAME_POSE_DEG: f64 = 10.0;
+/// The same of places that differ by less than this, mm.
+const SAME_PLACE_MM: f64 = 1.0;
+
 /// A station with the reason for it.
 pub(super) type Chosen = (PlannedStation, String);
 
@@ -30,6 +34,10 @@ pub(super) enum Basis {
     Solved { results: Arc<Results>, planned: Plan },
     /// The mounting as it was said, and where the ball was seen.
     Rough { cell: RoughCell, stations: Vec<MeasuredStation>, view: View },
+    /// The same of a plate.
+    RoughPlate { cell: RoughPlate, seen: Vec<SeenEdge>, view: View },
+    /// An edge was seen at one place only: places beside it, the best first.
+    Beside(Vec<PlannedStation>),
 }
 
 /// Chooses a station that can be gone to.
@@ -103,6 +111,20 @@ impl Chooser {
                     .map_err(|refusal| refusal.to_string())?;
                 let reason = words::reason_of_rough(&station);
                 Ok(vec![(station, reason)])
+            }
+            Basis::RoughPlate { cell, seen, view } => {
+                let (station, _) = next_rough_edge(cell, seen, &self.avoided, view, &self.limits)
+                    .map_err(|refusal| refusal.to_string())?;
+                let reason = words::reason_of_rough(&station);
+                Ok(vec![(station, reason)])
+            }
+            Basis::Beside(stations) => {
+                let is_avoided = |station: &PlannedStation| {
+                    let place = station.base_from_flange.translation_mm();
+                    self.avoided.iter().any(|pose| (pose.translation_mm() - place).norm() < SAME_PLACE_MM)
+                };
+                let free = stations.drain(..).filter(|station| !is_avoided(station));
+                Ok(free.map(|station| (station, words::REASON_OF_BESIDE.to_owned())).collect())
             }
         }
     }

@@ -7,9 +7,9 @@ use crate::device::safety::check_readiness;
 use crate::device::{
     Arming, Deadlines, LinkState, RobotSetup, RobotWorker, SensorKind, SensorSetup, SensorWorker, robot, sensor,
 };
-use crate::fit::ArcOptions;
+use crate::fit::Sought;
 use crate::geometry::{Base, Flange, Transform};
-use crate::session::Target;
+use crate::session::sought;
 use crate::text::cell as words;
 
 use super::super::{NoticeKind, Workbench};
@@ -43,7 +43,7 @@ impl Workbench {
         let profile = if is_folder { deadlines.profile * FOLDER_PATIENCE } else { deadlines.profile };
         let connect = Box::new(move |deadline| sensor::connect(&setup, deadline));
         let worker = SensorWorker::start(connect, Deadlines { profile, ..deadlines }, self.wake.clone());
-        worker.client().look_for(self.ball());
+        worker.client().look_for(self.sought());
         self.cell.sensor = Some(worker);
     }
 
@@ -73,10 +73,9 @@ impl Workbench {
     }
 
     /// What the live profiles and the search look for.
-    pub(super) fn ball(&self) -> Option<ArcOptions> {
+    pub(super) fn sought(&self) -> Option<Sought> {
         let session = &self.document.as_ref()?.session;
-        let Target::Ball { radius_mm, .. } = session.target else { return None };
-        Some(ArcOptions { ball_radius_mm: radius_mm, profile_std_mm: session.sensor.profile_std_mm })
+        sought(&session.target, session.sensor.profile_std_mm)
     }
 
     pub(super) fn poll_links(&mut self, now: Instant) -> bool {
@@ -91,10 +90,10 @@ impl Workbench {
                 view.latest = client.latest();
             }
         }
-        let ball = self.ball();
+        let sought = self.sought();
         if let Some(sensor) = &self.cell.sensor {
             let client = sensor.client();
-            client.look_for(ball);
+            client.look_for(sought);
             self.cell.view.sensor.state = client.link_state(now);
             if client.take_news() {
                 changed = true;

@@ -6,6 +6,7 @@ mod links;
 mod practice;
 mod proposals;
 mod replay;
+mod rough;
 mod run;
 mod travel;
 
@@ -44,6 +45,13 @@ pub(super) struct LiveCell {
     remarked_robot_of: Option<u64>,
 }
 
+impl LiveCell {
+    /// Whether a routine is under way, whose captures come into the document one by one.
+    pub(super) const fn is_measuring(&self) -> bool {
+        self.measuring.is_some()
+    }
+}
+
 impl Workbench {
     /// The live cell as it stands.
     #[must_use]
@@ -68,13 +76,14 @@ impl Workbench {
             }
             CellCommand::DisconnectRobot => self.disconnect_robot(),
             CellCommand::DisconnectSensor => self.disconnect_sensor(),
-            CellCommand::Practise => self.practise(),
+            CellCommand::Practise(part) => self.practise(part),
+            CellCommand::JogToEdge(edge) => self.jog_to_edge(edge),
             CellCommand::EndPractice => self.end_practice(),
             CellCommand::Arm(true) => self.arm(),
             CellCommand::Arm(false) => self.disarm(),
             CellCommand::SetSettings(settings) => self.set_cell_settings(&settings),
             CellCommand::CaptureStation => self.capture_here(),
-            CellCommand::FindLargestArc => self.find_largest_arc(),
+            CellCommand::FindLargestArc | CellCommand::FindTip => self.search_here(),
             CellCommand::ProposeStation => self.want_proposal(),
             CellCommand::AcceptProposal => self.accept_proposal(),
             CellCommand::SkipProposal => self.skip_proposal(),

@@ -2,25 +2,18 @@
 
 use std::sync::Arc;
 
-use crate::app::cell::{Proposal, RoughMounting, StationRoutine};
+use crate::app::cell::{Proposal, RoughMounting};
 use crate::app::jobs::{JobOutcome, Slot};
-use crate::calibrate::{Noise, Reading as MeasuredReading};
-use crate::device::{LinkState, MotionRefusal, SearchSettings};
-use crate::fit::ArcFit;
+use crate::device::{MotionRefusal, SearchSettings};
 use crate::geometry::{Base, Flange, Profile, Rigid, Transform, Vec3};
-use crate::plan::{MeasuredStation, PlannedStation, RoughCell, View};
-use crate::session::{Capture, Reading, Station};
+use crate::plan::{Limits, PlannedStation};
 use crate::text::cell as words;
 
 use super::super::{NoticeKind, Workbench};
 use super::choose::{Basis, Chooser, Chosen, check_station};
 
-/// The ball's centre stays so far inside the ends of the line that its arc does too, radii ...
-const ARC_HALF_WIDTH_RADII: f64 = 0.6;
-/// ... but may always be this far from the middle, radii.
-const LEAST_HALF_WIDTH_RADII: f64 = 0.25;
-/// How far the ball may be nearer or further than where it was seen, radii: heads see at least that.
-const HALF_RANGE_RADII: f64 = 0.4;
+/// Further than this the sensor is not tilted about a tip, degrees.
+const MOST_TILT_AT_TIP_DEG: f64 = 18.0;
 
 /// The way to a proposal.
 #[derive(Default)]
@@ -66,6 +59,11 @@ impl Proposing {
     /// A station was measured: where the robot can go is known again.
     pub const fn note_measured(&mut self) {
         self.num_refused = 0;
+    }
+
+    /// What the searches found.
+    pub fn peaks(&self) -> &[FoundPeak] {
+        &self.peaks
     }
 
     /// A search found its peak: the next stations are planned by that.
@@ -127,7 +125,7 @@ impl Workbench {
                 let mut chooser = Chooser {
                     basis,
                     avoided: self.cell.proposing.avoided.clone(),
-                    limits: self.plan_limits,
+                    limits: self.limits_of_target(),
                     arming: self.arming(),
                     report: self.cell.view.robot.latest.clone(),
                     search: self.search_at_stations(),
@@ -138,6 +136,14 @@ impl Workbench {
             Err(reason) => self.take_no_proposal(reason),
         }
         true
+    }
+
+    /// The flanks of a tip are steep as it is: tilted as far as a ball allows, one of them is not seen any more.
+    fn limits_of_target(&self) -> Limits {
+        let limits = self.plan_limits;
+        let is_tip = self.sought().is_some_and(|sought| sought.is_tip());
+        let most_tilt_deg = if is_tip { MOST_TILT_AT_TIP_DEG } else { limits.max_tilt_deg };
+        Limits { max_tilt_deg: limits.max_tilt_deg.min(most_tilt_deg), ..limits }
     }
 
     fn take_no_proposal(&mut self, reason: String) {
@@ -177,8 +183,7 @@ impl Workbench {
 
     /// The search that a run makes at each station, if that is what it makes.
     fn search_at_stations(&self) -> Option<SearchSettings> {
-        let settings = &self.cell.view.settings;
-        (settings.routine == StationRoutine::LargestArc).then_some(settings.search)
+        self.search_of(self.cell.view.settings.routine)
     }
 
     /// The robot, the switch or the limits may have changed since.
@@ -200,7 +205,10 @@ impl Workbench {
             self.notify_of_cell(NoticeKind::Error, reason);
             return;
         }
-        let routine = self.cell.view.settings.routine;
+        let settings = &mut self.cell.view.settings;
+        let routine = settings.routine;
+        // It stays chosen: the line is then on that edge.
+        settings.edge = proposal.station.edge.unwrap_or(settings.edge);
         match self.measure_station(Some(target), routine) {
             Ok(()) => self.run_is_measuring(),
             Err(reason) => self.take_no_proposal(reason),
@@ -215,103 +223,17 @@ impl Workbench {
 
     /// What the next station is chosen by.
     fn basis(&self) -> Result<Basis, String> {
-        if let (Some(plan), Some((_, _, results))) = (self.current_plan(), self.case()) {
-            return Ok(Basis::Solved { results, planned: plan.clone() });
-        }
-        let (Some(document), Some(ball)) = (&self.document, self.ball()) else {
-            return Err(words::NO_SESSION.to_owned());
-        };
-        let session = &document.session;
-        let mounting = self.cell.view.settings.mounting.ok_or_else(|| words::NO_MOUNTING.to_owned())?;
-        let flange_from_sensor = rigid(&mounting);
-        let radius_mm = ball.ball_radius_mm;
-        let seen = self.largest_sections();
-        let first = seen.first().ok_or_else(|| words::NO_BALL_SEEN.to_owned())?;
-        let stations: Vec<MeasuredStation> = seen
-            .iter()
-            .map(|seen| {
-                let circle = seen.arc.circle;
-                let centre_mm = [circle.x_mm, circle.z_mm];
-                match seen.peak {
-                    Some(peak) => MeasuredStation::at_peak(peak.base_from_flange, centre_mm, peak.std_mm),
-                    None => MeasuredStation::of_section(seen.base_from_flange, centre_mm, circle.radius_mm, radius_mm),
+        match (self.current_plan(), self.case()) {
+            (Some(plan), Some((_, _, results))) => {
+                let mut planned = plan.clone();
+                if self.limits_of_target() != self.plan_limits {
+                    planned.stations.clear();
                 }
-            })
-            .collect();
-        let [least_z, most_z] = stations
-            .iter()
-            .map(|station| station.target_in_sensor_mm.z)
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], z| [least.min(z), most.max(z)]);
-        let half_line_mm = first.profile.x_mm().iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-        let view = View {
-            half_width_mm: (half_line_mm - ARC_HALF_WIDTH_RADII * radius_mm).max(LEAST_HALF_WIDTH_RADII * radius_mm),
-            half_range_mm: HALF_RANGE_RADII * radius_mm,
-            middle_range_mm: f64::midpoint(least_z, most_z),
-        };
-        let looks_along_in_base = first.base_from_flange.rotation() * flange_from_sensor.rotation * Vec3::z();
-        let noise = Noise {
-            position_std_mm: session.robot.position_std_mm,
-            orientation_std_rad: session.robot.orientation_std_deg.map(f64::to_radians),
-        };
-        let cell = RoughCell {
-            mount: session.mount,
-            flange_from_sensor,
-            target_in_base_mm: Vec3::zeros(),
-            radius_mm,
-            noise,
-            looks_along_in_base,
-        };
-        Ok(Basis::Rough { cell, stations, view })
-    }
-
-    /// The largest section of each station; without stations that which is seen now.
-    fn largest_sections(&self) -> Vec<Seen<'_>> {
-        let mut found = Vec::new();
-        if let (Some(document), Some(results)) = (&self.document, &self.results) {
-            for (station_idx, station) in document.session.stations.iter().enumerate() {
-                let peak = self.peak_of(station);
-                let sections = station.captures.iter().enumerate().filter_map(|(capture_idx, capture)| {
-                    match (&capture.reading, results.measured.reading(station_idx, capture_idx)) {
-                        (Reading::Profile(profile), Some(MeasuredReading::Arc(arc))) => {
-                            Some(Seen { base_from_flange: capture.base_from_flange, arc, profile, peak })
-                        }
-                        _ => None,
-                    }
-                });
-                let radius_mm = |seen: &Seen<'_>| seen.arc.circle.radius_mm;
-                found.extend(sections.filter(|_| station.enabled).max_by(|a, b| radius_mm(a).total_cmp(&radius_mm(b))));
+                Ok(Basis::Solved { results, planned })
             }
+            _ => self.rough_basis(),
         }
-        let view = &self.cell.view;
-        if found.is_empty()
-            && let (Some(live), Some(report)) = (&view.live, &view.robot.latest)
-            && view.robot.state == LinkState::Ready
-            && let Ok(arc) = &live.arc
-        {
-            let profile = &live.reading.profile;
-            found.push(Seen { base_from_flange: report.base_from_flange, arc, profile, peak: None });
-        }
-        found
     }
-
-    fn peak_of(&self, station: &Station) -> Option<&FoundPeak> {
-        let profile = |capture: &Capture| match &capture.reading {
-            Reading::Profile(profile) => Some(Arc::clone(profile)),
-            Reading::Point(_) => None,
-        };
-        let profiles: Vec<_> = station.captures.iter().filter_map(profile).collect();
-        let is_of_station = |peak: &&FoundPeak| profiles.iter().any(|one| Arc::ptr_eq(one, &peak.first_profile));
-        self.cell.proposing.peaks.iter().find(is_of_station)
-    }
-}
-
-/// A section of the ball with where it was seen from.
-struct Seen<'a> {
-    base_from_flange: Transform<Base, Flange>,
-    arc: &'a ArcFit,
-    profile: &'a Profile,
-    /// Where the ball's centre is in the laser plane, if a search has found that.
-    peak: Option<&'a FoundPeak>,
 }
 
 pub(super) fn rigid(mounting: &RoughMounting) -> Rigid {

@@ -9,7 +9,7 @@ use crate::app::cell::{LiveProfile, ReplayView};
 use crate::calibrate::Reading as MeasuredReading;
 use crate::device::search::{Replay as SearchReplay, StepSeen};
 use crate::device::{ProfileReading, Readiness, RobotReport, SearchReport};
-use crate::fit::{ArcFit, ArcRefusal, Refusal, extract_arc};
+use crate::fit::{ArcRefusal, Found, Refusal, Sought};
 use crate::geometry::Vec3;
 use crate::session::{Capture, Reading, Station};
 use crate::text::cell as words;
@@ -28,7 +28,7 @@ pub(super) struct Replay {
     next_at: Instant,
     station_idx: usize,
     capture_idx: usize,
-    /// The arcs and the reports of the station that plays, one a capture.
+    /// What is in the captures of the station that plays, and the reports of its search, one a capture.
     station: Option<Played>,
     /// Gone once the last capture was shown; that stays to be looked at until the replay is ended.
     ticker: Option<Ticker>,
@@ -36,7 +36,8 @@ pub(super) struct Replay {
 
 /// A station, ready to be played.
 struct Played {
-    arcs: Vec<Option<Result<Arc<ArcFit>, ArcRefusal>>>,
+    found: Vec<Option<Result<Found, Refusal>>>,
+    /// None where nothing is searched.
     reports: Vec<Arc<SearchReport>>,
 }
 
@@ -136,7 +137,7 @@ impl Workbench {
         let (station_idx, capture_idx) = (replay.station_idx, replay.capture_idx);
         // An edit during the replay may have changed the station: it is worked out anew if it does not fit any more.
         let played = match replay.station.take() {
-            Some(played) if played.arcs.len() == station.captures.len() => played,
+            Some(played) if played.found.len() == station.captures.len() => played,
             _ => self.played(station_idx, station),
         };
         self.show_recorded(&station.captures[capture_idx], &played, capture_idx, now);
@@ -159,43 +160,49 @@ impl Workbench {
             received_at: now,
         });
         view.search = played.reports.get(capture_idx).cloned();
-        let arc = played.arcs.get(capture_idx).cloned().flatten();
-        view.live = match (&capture.reading, arc) {
-            (Reading::Profile(profile), Some(arc)) => {
+        let found = played.found.get(capture_idx).cloned().flatten();
+        view.live = match (&capture.reading, found) {
+            (Reading::Profile(profile), Some(found)) => {
                 let trigger_count = u32::try_from(capture_idx).unwrap_or_default();
                 let reading = ProfileReading { profile: Arc::clone(profile), trigger_count, received_at: now };
-                Some(LiveProfile { reading, arc, rate_hz: RATE_HZ })
+                Some(LiveProfile { reading, found, rate_hz: RATE_HZ })
             }
             _ => None,
         };
         view.sensor.latest = view.live.as_ref().map(|live| live.reading.clone());
     }
 
-    /// The arcs of a station, taken from the results where they are there, and what a search would have made of them.
+    /// What is in a station's captures, taken from the results where it is there, and what a search for the largest arc would
+    /// have made of it.
     fn played(&self, station_idx: usize, station: &Station) -> Played {
-        let ball = self.ball();
+        let sought = self.sought();
         let measured = self.results.as_ref().filter(|results| self.is_current(results.revision));
-        let arc_of = |(capture_idx, capture): (usize, &Capture)| {
+        let found_in = |(capture_idx, capture): (usize, &Capture)| {
             let Reading::Profile(profile) = &capture.reading else { return None };
             Some(match measured.and_then(|results| results.measured.reading(station_idx, capture_idx)) {
-                Some(MeasuredReading::Arc(arc)) => Ok(Arc::clone(arc)),
-                Some(MeasuredReading::Refused(Refusal::Arc(refusal))) => Err(refusal.clone()),
-                _ => ball.map_or(Err(ArcRefusal::NoBall), |ball| extract_arc(profile, &ball).map(Arc::new)),
+                Some(MeasuredReading::Arc(arc)) => Ok(Found::Arc(Arc::clone(arc))),
+                Some(MeasuredReading::Edge(edge)) => Ok(Found::Edge(Arc::clone(edge))),
+                Some(MeasuredReading::Refused(refusal)) => Err(refusal.clone()),
+                Some(MeasuredReading::Point(_)) | None => {
+                    sought.map_or_else(|| Err(ArcRefusal::NoBall.into()), |sought| sought.find(profile))
+                }
             })
         };
-        let arcs: Vec<_> = station.captures.iter().enumerate().map(arc_of).collect();
-        let radius_mm = ball.map_or(0.0, |ball| ball.ball_radius_mm);
-        let seen = travels_mm(&station.captures).into_iter().zip(&arcs).map(|(travelled_mm, arc)| StepSeen {
+        let found: Vec<_> = station.captures.iter().enumerate().map(found_in).collect();
+        let Some(ball) = sought.as_ref().and_then(Sought::ball) else {
+            return Played { found, reports: Vec::new() };
+        };
+        let seen = travels_mm(&station.captures).into_iter().zip(&found).map(|(travelled_mm, found)| StepSeen {
             travelled_mm,
-            radius_and_std_mm: match arc {
-                Some(Ok(arc)) => Ok([arc.circle.radius_mm, arc.std_mm()[2]]),
+            radius_and_std_mm: match found {
+                Some(Ok(Found::Arc(arc))) => Ok([arc.circle.radius_mm, arc.std_mm()[2]]),
                 Some(Err(refusal)) => Err(refusal.to_string()),
-                None => Err(words::NO_PROFILE.to_owned()),
+                Some(Ok(Found::Edge(_))) | None => Err(words::NO_PROFILE.to_owned()),
             },
         });
-        let reports = SearchReplay::new(&self.cell.view.settings.search, radius_mm, seen.collect());
+        let reports = SearchReplay::new(&self.cell.view.settings.search, ball.ball_radius_mm, seen.collect());
         let reports = reports.map(Arc::new).collect();
-        Played { arcs, reports }
+        Played { found, reports }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use crate::app::cell::{Activity, RunView, StationRoutine};
+use crate::app::cell::{Activity, RunView};
 use crate::calibrate::best_available;
 use crate::device::{DeviceError, MotionRefusal, RoutineEnd, SearchEnd};
 use crate::geometry::{Base, Flange, Transform};
@@ -100,16 +100,19 @@ impl Workbench {
             is_paused: false,
             stage: Stage::Between,
         };
-        // Where the robot stands there may be a ball in view already.
-        if self.cell.view.live.as_ref().is_some_and(|live| live.arc.is_ok()) && !self.stands_at_a_station() {
+        // Where the robot stands the target may be in view already.
+        if self.cell.view.live.as_ref().is_some_and(|live| live.found.is_ok()) && !self.stands_at_a_station() {
             if let Err(reason) = self.measure_station(None, self.cell.view.settings.routine) {
                 self.notify_of_cell(NoticeKind::Error, reason);
                 return;
             }
             run.stage = Stage::Measuring;
-            if self.cell.view.settings.routine == StationRoutine::LargestArc {
+            if self.search_of(self.cell.view.settings.routine).is_some() {
                 self.remark_oblique_travel();
             }
+        }
+        if self.cell.measuring.is_none() {
+            self.cell.view.activity = Activity::Thinking;
         }
         self.cell.run = Some(run);
         self.show_run();
@@ -306,7 +309,7 @@ impl Workbench {
 /// Whether another pose may do better: nothing is wrong with the cell, as far as this ending tells.
 const fn is_of_this_pose(end: &RoutineEnd) -> bool {
     match end {
-        RoutineEnd::Done => true,
+        RoutineEnd::Done | RoutineEnd::NothingSeen { .. } => true,
         RoutineEnd::Searched(end) => match end {
             SearchEnd::Found { .. }
             | SearchEnd::NoArcAtStart { .. }

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 
 use nalgebra::Translation3;
 
+use crate::calibrate::Edge;
 use crate::geometry::{Rigid, Vec3, so3};
 use crate::scene::{Dirt, Part, Random, Scene};
 
@@ -31,6 +32,9 @@ const PUSH_MM: Vec3 = Vec3::new(1.9, -1.2, 0.0);
 const POSE_STD_MM_DEG: [f64; 2] = [0.02, 0.005];
 /// Noise of a point of a profile, mm.
 const PROFILE_STD_MM: f64 = 0.01;
+
+/// How fast the arm is jogged, as a part of full speed.
+const JOG_SPEED_PART: f64 = 0.1;
 
 /// The time over which speeds are told, s.
 const SPEED_OVER_S: f64 = 1e-3;
@@ -206,6 +210,18 @@ impl World {
         self.start_leg(&mut state, order, time_s)?;
         state.program.clear();
         Ok(self.real(state.leg.motion.end_s() - time_s))
+    }
+
+    /// Sends the arm to where the line is on an edge of the plate; or says why not.
+    pub fn jog_to_edge(&self, edge: Edge) -> Result<(), String> {
+        if !self.subject.is_plate() {
+            return Err("there is no plate".to_owned());
+        }
+        let order = Order::ByJoints {
+            base_from_flange: self.layout.base_from_flange_at_edge(edge),
+            speed_part: JOG_SPEED_PART,
+        };
+        self.start_motion(&order).map(drop).map_err(|error| error.to_string())
     }
 
     /// Runs a program instead of the one that runs. A step that cannot be done ends it.

@@ -4,6 +4,7 @@ use crate::geometry::notation::{AngleUnit, LengthUnit, NotAPose, OrientationForm
 use crate::geometry::{Base, Flange, PoseConvention, PoseNotation, Transform, Vec3, so3};
 use crate::session::{Edit, EditRefusal, Session};
 use crate::text::conventions as words;
+use crate::ui::charts::Orbit;
 
 /// So many poses are drawn and listed; more would hide each other.
 pub const MAX_FRAMES: usize = 8;
@@ -252,40 +253,6 @@ fn change(now: &NamedFrame, then: &NamedFrame) -> Change {
     }
 }
 
-/// From where the frames are looked at.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Camera {
-    yaw: f64,
-    pitch: f64,
-}
-
-impl Default for Camera {
-    /// From the front, the right and above.
-    fn default() -> Self {
-        Self { yaw: -0.6, pitch: 0.45 }
-    }
-}
-
-impl Camera {
-    /// Goes round by a drag, points on the screen.
-    pub fn orbit(&mut self, right: f32, down: f32) {
-        /// Radians a point: a drag across a picture is about half a turn.
-        const SPEED: f64 = 0.012;
-        self.yaw -= f64::from(right) * SPEED;
-        self.pitch = (self.pitch + f64::from(down) * SPEED).clamp(-1.5, 1.5);
-    }
-
-    /// A direction in the base as seen: to the right, up, and towards the eye.
-    #[must_use]
-    pub fn seen(&self, in_base: Vec3) -> Vec3 {
-        let ((sin_yaw, cos_yaw), (sin_pitch, cos_pitch)) = (self.yaw.sin_cos(), self.pitch.sin_cos());
-        let right = Vec3::new(-sin_yaw, cos_yaw, 0.0);
-        let up = Vec3::new(-sin_pitch * cos_yaw, -sin_pitch * sin_yaw, cos_pitch);
-        let towards = Vec3::new(cos_pitch * cos_yaw, cos_pitch * sin_yaw, sin_pitch);
-        Vec3::new(right.dot(&in_base), up.dot(&in_base), towards.dot(&in_base))
-    }
-}
-
 /// What part of the base's space is in the picture, as the camera sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
@@ -300,7 +267,7 @@ pub struct Extent {
 impl Extent {
     /// Around the frames, and around the base as well unless that would leave too little room for them.
     #[must_use]
-    pub fn of(frames: &[NamedFrame], camera: &Camera) -> Self {
+    pub fn of(frames: &[NamedFrame], camera: &Orbit) -> Self {
         /// The frames take up at least this part of the picture.
         const LEAST_PART: f64 = 0.6;
         /// Seen along a row of frames they would fill the picture: so much of their real extent counts in any case.

@@ -4,10 +4,10 @@ use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Role, Sense, Stroke, Ui
 
 use crate::geometry::Vec3;
 use crate::text::conventions as words;
-use crate::ui::charts::arrow;
+use crate::ui::charts::{Orbit, arrow};
 use crate::ui::theme;
 
-use super::model::{Camera, Extent, NamedFrame};
+use super::model::{Extent, NamedFrame};
 
 /// Length of a frame's arrows as a part of the picture's smaller side.
 const ARROW_PART: f32 = 0.12;
@@ -19,15 +19,15 @@ const WIDE: f32 = 1.4;
 const LEAST_SEEN: f32 = 8.0;
 
 /// Draws the frames into a rectangle; a drag goes round them.
-pub fn show(ui: &mut Ui, rect: Rect, title: &str, frames: &[NamedFrame], camera: &mut Camera) {
+pub fn show(ui: &mut Ui, rect: Rect, title: &str, frames: &[NamedFrame], camera: &mut Orbit) {
     let response = ui.allocate_rect(rect, Sense::click_and_drag());
     let name = words::picture_name(title, frames.len());
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
     if response.dragged() {
-        camera.orbit(response.drag_delta().x, response.drag_delta().y);
+        camera.turn(response.drag_delta());
     }
     if response.double_clicked() {
-        *camera = Camera::default();
+        *camera = Orbit::default();
     }
     response.on_hover_cursor(egui::CursorIcon::Grab).on_hover_text(words::ORBIT_HINT);
     let picture = Picture::new(ui, rect, frames, camera);
@@ -42,7 +42,7 @@ pub fn show(ui: &mut Ui, rect: Rect, title: &str, frames: &[NamedFrame], camera:
 
 struct Picture<'a> {
     painter: Painter,
-    camera: &'a Camera,
+    camera: &'a Orbit,
     extent: Extent,
     rect: Rect,
     /// Where the base's directions do not stand.
@@ -54,7 +54,7 @@ struct Picture<'a> {
 }
 
 impl<'a> Picture<'a> {
-    fn new(ui: &Ui, rect: Rect, frames: &[NamedFrame], camera: &'a Camera) -> Self {
+    fn new(ui: &Ui, rect: Rect, frames: &[NamedFrame], camera: &'a Orbit) -> Self {
         let size = rect.width().min(rect.height());
         let arrow = (size * ARROW_PART).clamp(18.0, 44.0);
         let extent = Extent::of(frames, camera);

@@ -7,10 +7,11 @@ use crate::geometry::PoseNotation;
 use crate::session::edit::shown_numbers;
 use crate::session::{Edit, Session};
 use crate::text::conventions as words;
+use crate::ui::charts::Orbit;
 use crate::ui::widgets::{card_with_height, chip, number_text, primary_button};
 use crate::ui::{PanelContext, theme};
 
-use super::model::{self, Camera, Draft};
+use super::model::{self, Draft};
 use super::picker::{self, Search};
 use super::reinterpret::{Answer, Reinterpretation, numbers_text};
 use super::{editor, paint};
@@ -32,7 +33,7 @@ pub struct ConventionState {
     shown_as: Option<ShownAs>,
     reinterpretation: Option<Reinterpretation>,
     has_picture: bool,
-    camera: Camera,
+    camera: Orbit,
 }
 
 /// The dialog that chooses units and frame.
@@ -85,7 +86,7 @@ fn row(ui: &mut Ui, session: &Session, state: &mut ConventionState, commands: &m
     });
 }
 
-fn picture(ui: &mut Ui, session: &Session, camera: &mut Camera) {
+fn picture(ui: &mut Ui, session: &Session, camera: &mut Orbit) {
     let height = PICTURE_HEIGHT.min(ui.available_height() * 0.5);
     Panel::bottom("poses as frames")
         .frame(Frame::NONE)

@@ -8,11 +8,12 @@ use crate::geometry::{PoseNotation, Vec3};
 use crate::session::edit::shown_numbers;
 use crate::session::{EditRefusal, Session};
 use crate::text::conventions as words;
+use crate::ui::charts::Orbit;
 use crate::ui::theme;
 use crate::ui::widgets::tables::{self, head, number_cell, number_column, number_head};
 use crate::ui::widgets::{fixed, primary_button};
 
-use super::model::{self, Camera, Draft, Preview};
+use super::model::{self, Draft, Preview};
 use super::picker::Search;
 use super::{editor, paint};
 
@@ -38,7 +39,7 @@ pub enum Answer {
 pub struct Reinterpretation {
     draft: Draft,
     search: Search,
-    camera: Camera,
+    camera: Orbit,
     previewed: Option<Previewed>,
 }
 
@@ -57,7 +58,7 @@ impl Reinterpretation {
         Self {
             draft: Draft::of(&session.robot.notation),
             search: Search::default(),
-            camera: Camera::default(),
+            camera: Orbit::default(),
             previewed: None,
         }
     }

@@ -58,6 +58,11 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut Work
         ui.add_space(4.0);
         ui.horizontal(|ui| {
             ui.label(theme::strong("✖").color(theme::palette(ui).bad));
+            if ui.button(words::EXAMINE_AGAIN).clicked() {
+                let (scan_idx, calibration) =
+                    scans.chosen().cloned().unwrap_or_else(|| (0, default_calibration(context)));
+                ask(context, ScanCommand::Examine { scan_idx, calibration });
+            }
             ui.add(egui::Label::new(&failure.reason).wrap());
         });
     }

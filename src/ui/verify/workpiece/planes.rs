@@ -1,6 +1,6 @@
 //! The regions with their planes, the angles between them, and the distances of points drawn at random.
 
-use egui::{Color32, Rect, Sense, TextEdit, Ui, UiBuilder, vec2};
+use egui::{Align2, Color32, Margin, Rect, Role, Sense, Stroke, StrokeKind, TextEdit, Ui, UiBuilder, WidgetInfo, vec2};
 use egui_extras::Column;
 
 use crate::app::workbench::scans::{ExaminedScan, ScanCommand};
@@ -18,6 +18,8 @@ use super::colors::region_color;
 
 /// Width of the histogram, as a part of the whole.
 const HISTOGRAM_PART: f32 = 0.3;
+/// Width from which the histogram has room beside the planes.
+const SIDE_BY_SIDE_FROM: f32 = 860.0;
 /// Angles shown; those of the largest planes come first.
 const MOST_ANGLES: usize = 6;
 
@@ -37,16 +39,28 @@ pub(super) fn show(
     height: f32,
     state: &mut PlanesState,
 ) {
-    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
-    let (left, right) = rect.split_left_right_at_fraction(1.0 - HISTOGRAM_PART);
+    let room = vec2(ui.available_width(), height);
+    let (rect, _) = ui.allocate_exact_size(room, Sense::hover());
+    // In a narrow window the histogram stands below, so that no equation is cut.
+    let (left, right) = if room.x < SIDE_BY_SIDE_FROM {
+        (rect, ui.allocate_exact_size(room, Sense::hover()).0)
+    } else {
+        let (left, right) = rect.split_left_right_at_fraction(1.0 - HISTOGRAM_PART);
+        (left.with_max_x(left.right() - theme::GAP / 2.0), right.with_min_x(right.left() + theme::GAP / 2.0))
+    };
     let within = |ui: &mut Ui, rect: Rect| ui.new_child(UiBuilder::new().max_rect(rect));
-    let mut left = within(ui, left.with_max_x(left.right() - theme::GAP / 2.0));
-    let mut find = false;
+    let mut left = within(ui, left);
+    let (mut find, mut undo) = (false, false);
+    let can_undo = context.workbench.scans().can_undo_regions();
     widgets::card_with_height(
         &mut left,
         words::PLANES,
         height,
-        |ui| find = ui.button(words::FIND_PLANES).on_hover_text(words::FIND_PLANES_HINT).clicked(),
+        |ui| {
+            find = ui.button(words::FIND_PLANES).on_hover_text(words::FIND_PLANES_HINT).clicked();
+            let button = ui.add_enabled(can_undo, egui::Button::new(words::UNDO_REGIONS));
+            undo = button.on_hover_text(words::UNDO_REGIONS_HINT).clicked();
+        },
         |ui| {
             let angles = angles(scan);
             #[expect(clippy::cast_precision_loss, reason = "a few rows")]
@@ -60,7 +74,10 @@ pub(super) fn show(
     if find {
         ask(context, ScanCommand::FindPlanes);
     }
-    let mut right = within(ui, right.with_min_x(right.left() + theme::GAP / 2.0));
+    if undo {
+        ask(context, ScanCommand::UndoRegions);
+    }
+    let mut right = within(ui, right);
     let region_idx = state.region_idx.filter(|idx| *idx < scan.regions.len());
     let shown = region_idx.map_or(words::ALL_REGIONS, |idx| scan.regions[idx].name.as_str());
     let num_drawn = scan.regions.iter().map(|region| region.distances_mm.len()).max().unwrap_or(0);
@@ -121,7 +138,8 @@ fn planes_table(
                 let idx = row.index();
                 let region = &scan.regions[idx];
                 row.set_selected(state.region_idx == Some(idx));
-                row.col(|ui| name_cell(ui, context, &region.name, idx));
+                let mut is_chosen = false;
+                row.col(|ui| is_chosen = name_cell(ui, context, &region.name, idx, state.region_idx == Some(idx)));
                 row.col(|ui| match &region.plane {
                     Ok(fit) => {
                         let text = words::equation(&fit.equation()).replace('-', "−");
@@ -142,7 +160,7 @@ fn planes_table(
                         ask(context, ScanCommand::RemoveRegion(idx));
                     }
                 });
-                if row.response().clicked() {
+                if row.response().clicked() || is_chosen {
                     state.region_idx = if state.region_idx == Some(idx) { None } else { Some(idx) };
                 }
             });
@@ -150,17 +168,24 @@ fn planes_table(
     });
 }
 
-/// The colour and the name, which can be changed in place.
-fn name_cell(ui: &mut Ui, context: &mut PanelContext<'_>, name: &str, idx: usize) {
-    ui.add_space(8.0);
-    let (square, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
-    ui.painter().rect_filled(square, 2.0, region_color(idx));
+/// The colour, by which the keyboard chooses the region, and the name, which can be changed in place. Whether it was chosen.
+fn name_cell(ui: &mut Ui, context: &mut PanelContext<'_>, name: &str, idx: usize, is_shown: bool) -> bool {
+    ui.add_space(5.0);
+    let (square, response) = ui.allocate_exact_size(vec2(16.0, 16.0), Sense::click());
+    response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_shown, words::show_region(name)));
+    ui.painter().rect_filled(square.shrink(3.0), 2.0, region_color(idx));
+    if response.has_focus() || is_shown {
+        let stroke = Stroke::new(1.0, theme::palette(ui).accent);
+        ui.painter().rect_stroke(square, 3.0, stroke, StrokeKind::Inside);
+    }
     let mut text = name.to_owned();
     let field = ui.add(
         TextEdit::singleline(&mut text)
             .id_salt(("region name", idx))
             .frame(egui::Frame::NONE)
             .background_color(Color32::TRANSPARENT)
+            .align(Align2::LEFT_CENTER)
+            .margin(Margin::ZERO)
             .desired_width(30.0)
             .char_limit(40),
     );
@@ -168,6 +193,7 @@ fn name_cell(ui: &mut Ui, context: &mut PanelContext<'_>, name: &str, idx: usize
     if field.changed() {
         ask(context, ScanCommand::RenameRegion(idx, text));
     }
+    response.clicked()
 }
 
 /// Pairs of planes with the angle between them.

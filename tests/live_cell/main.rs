@@ -1,172 +1,24 @@
 //! The live cell without a window: practice on the simulated cell, from the first connection to a compared result.
 #![expect(clippy::expect_used, reason = "a test that finds nothing to check must fail")]
 
-use std::path::Path;
-use std::sync::Arc;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
-use std::time::{Duration, Instant};
+mod bench;
+mod edges;
 
-use handeye::app::cell::{Activity, CellCommand, CellSettings, RoughMounting, StationRoutine};
+use std::time::Duration;
+
+use handeye::app::cell::{Activity, CellCommand, StationRoutine};
 use handeye::app::compare::distance_from_truth;
-use handeye::app::{Command, NoticeKind, RecoverySettings, Workbench};
+use handeye::app::{Command, NoticeKind, Workbench};
 use handeye::calibrate::verdict::GOOD_UP_TO_MM;
-use handeye::calibrate::{Method, Solution};
 use handeye::device::sim::{Fault, FaultSpec, Head, SimCell, SimOptions};
 use handeye::device::{LinkState, MotionRefusal, RobotKind, RoutineEnd, SearchPhase, SensorKind, WorkspaceBox};
-use handeye::geometry::Vec3;
-use handeye::session::{Edit, Row, Session, SetupField, Target};
+use handeye::session::{Edit, Row, SetupField, Target};
 use handeye::ui::capture::model::Outlook;
 
-/// Long past anything that is waited for here, on a slow machine as well.
-const PATIENCE: Duration = Duration::from_mins(2);
-/// Fast enough for whole runs.
-const FAST: f64 = 50.0;
-/// Slow enough for something to happen during a move.
-const SLOW: f64 = 2.0;
-/// How far the result may be from the truth, in its stated σ. If all the uncertainty lies along one direction, a fair result
-/// is further off once in 16 000 runs.
-const FAIR_STDS: f64 = 4.0;
+use bench::{Bench, FAIR_STDS, FAST, SLOW, position_mm, recoverable_in};
 
 /// A search that finds its peak has at least three sections on either side of it.
 const FEWEST_IN_SEARCH: usize = 6;
-
-struct Bench {
-    workbench: Workbench,
-    woken: Receiver<()>,
-}
-
-impl Bench {
-    fn new() -> Self {
-        let (sender, woken) = sync_channel(64);
-        let wake = move || {
-            sender.try_send(()).ok();
-        };
-        Self { workbench: Workbench::new(Arc::new(wake)), woken }
-    }
-
-    /// A bench with a simulated cell, connected.
-    fn practising(seed: u64, time_scale: f64) -> Self {
-        Self::new().practise(seed, time_scale)
-    }
-
-    fn practise(self, seed: u64, time_scale: f64) -> Self {
-        self.practise_with(&SimOptions { seed, time_scale, ..SimOptions::default() })
-    }
-
-    fn practise_with(mut self, options: &SimOptions) -> Self {
-        self.workbench.practise_with(options);
-        self.wait("the links", |workbench| {
-            let cell = workbench.cell();
-            cell.robot.state == LinkState::Ready && cell.robot.latest.is_some() && cell.live.is_some()
-        });
-        self.change_settings(|settings| settings.settle.settle_ms = 5);
-        self
-    }
-
-    /// A session of its own, with a cell that is not for practice.
-    fn connected_to(sim: &SimCell) -> Self {
-        let mut bench = Self::new();
-        bench.workbench.apply(Command::NewSession(Target::ball(sim.truth.radius_mm)));
-        bench.cell(CellCommand::ConnectRobot(sim.robot_setup.clone()));
-        bench.cell(CellCommand::ConnectSensor(sim.sensor_setup.clone()));
-        bench.wait("the links", |workbench| {
-            let cell = workbench.cell();
-            cell.robot.state == LinkState::Ready && cell.robot.latest.is_some() && cell.live.is_some()
-        });
-        let mounted = sim.truth.rough_flange_from_sensor;
-        let q = mounted.rotation;
-        bench.change_settings(|settings| {
-            settings.settle.settle_ms = 5;
-            let translation_mm = mounted.translation.vector.into();
-            settings.mounting = Some(RoughMounting { translation_mm, quaternion_wxyz: [q.w, q.i, q.j, q.k] });
-        });
-        bench
-    }
-
-    fn armed(mut self) -> Self {
-        self.cell(CellCommand::Arm(true));
-        assert!(self.workbench.cell().is_armed, "{:?}", self.workbench.notices());
-        self
-    }
-
-    fn change_settings(&mut self, change: impl FnOnce(&mut CellSettings)) {
-        let mut settings = self.workbench.cell().settings;
-        change(&mut settings);
-        self.cell(CellCommand::SetSettings(Box::new(settings)));
-    }
-
-    fn cell(&mut self, command: CellCommand) {
-        self.workbench.apply(Command::Cell(Box::new(command)));
-    }
-
-    /// Polls until it is so.
-    #[track_caller]
-    fn wait(&mut self, what: &str, is_so: impl Fn(&Workbench) -> bool) {
-        let deadline = Instant::now() + PATIENCE;
-        while !is_so(&self.workbench) {
-            assert!(Instant::now() < deadline, "waited in vain for {what}: {:?}", self.workbench.notices());
-            match self.woken.recv_timeout(Duration::from_millis(20)) {
-                Ok(()) | Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => panic!("the workbench is gone"),
-            }
-            self.workbench.poll();
-        }
-    }
-
-    fn wait_for_rest(&mut self) {
-        self.wait("rest", |workbench| !workbench.cell().is_busy() && !workbench.is_busy());
-    }
-
-    fn session(&self) -> &Session {
-        &self.workbench.document().expect("open").session
-    }
-
-    fn num_undo_steps(&self) -> usize {
-        self.workbench.document().expect("open").history.undo_labels().len()
-    }
-
-    fn solution(&self) -> &Solution {
-        let results = self.workbench.results().expect("solved");
-        results.method(Method::BallBundle).expect("run").outcome.as_ref().expect("solved")
-    }
-
-    fn num_errors(&self) -> usize {
-        self.workbench.notices().iter().filter(|notice| notice.kind == NoticeKind::Error).count()
-    }
-
-    fn last_end(&self) -> &RoutineEnd {
-        self.workbench.cell().last_end.as_ref().expect("a routine has ended")
-    }
-
-    fn last_notice(&self) -> &str {
-        &self.workbench.notices().last().expect("a notice").message
-    }
-
-    /// The robot stands: what it reports from now on differs by no more than its noise.
-    fn check_robot_stands(&mut self) {
-        let mut positions = Vec::new();
-        for _ in 0..3 {
-            let since = Instant::now();
-            let latest = |workbench: &Workbench| workbench.cell().robot.latest.clone();
-            self.wait("another report", |workbench| latest(workbench).is_some_and(|latest| latest.received_at > since));
-            positions.push(latest(&self.workbench).expect("reports").base_from_flange.translation_mm());
-        }
-        let moved_mm = (positions[2] - positions[0]).norm();
-        // The stated noise is about 0.02 mm; a robot under way makes 50 mm/s and more.
-        assert!(moved_mm < 0.5, "{moved_mm} mm");
-    }
-}
-
-/// Where the robot says that it is, mm.
-fn position_mm(workbench: &Workbench) -> Vec3 {
-    workbench.cell().robot.latest.as_ref().expect("reports").base_from_flange.translation_mm()
-}
-
-fn recoverable_in(folder: &Path) -> Bench {
-    let mut bench = Bench::new();
-    bench.workbench.keep_copies(RecoverySettings { folder: folder.to_owned(), interval: Duration::ZERO });
-    bench
-}
 
 #[test]
 fn a_run_over_eight_stations_gives_a_result_within_its_stated_sigma() {
@@ -605,7 +457,7 @@ fn a_recorded_session_plays_through_the_panel_and_changes_nothing() {
     assert!((peak_mm(&report) - peak_mm(&found)).abs() < 0.2, "{} {}", peak_mm(&report), peak_mm(&found));
     let last = before.stations[0].captures.last().expect("captures");
     assert_eq!(cell.robot.latest.as_ref().expect("played").base_from_flange, last.base_from_flange);
-    assert!(cell.live.as_ref().expect("played").arc.is_ok());
+    assert!(cell.live.as_ref().expect("played").found.is_ok());
     assert_eq!(bench.session(), &before);
     bench.cell(CellCommand::EndReplay);
     let cell = bench.workbench.cell();

@@ -1,0 +1,172 @@
+//! The sizes of several noises from the scatter that they leave together.
+//!
+//! Restricted maximum likelihood for variance components by Fisher scoring (Patterson & Thompson 1971), on the logarithms of
+//! the variances. A few points do not tell the noises apart, so their proportions have a prior: about those that they begin
+//! with. Their common scale has none.
+
+use nalgebra::{Matrix2, Matrix3, SMatrix, Vector2, Vector3};
+
+use crate::calibrate::SolveError;
+
+use super::descent::inverse_of;
+use super::points::NUM_UNKNOWNS;
+
+/// Position, orientation, point.
+pub(super) const NUM_COMPONENTS: usize = 3;
+/// How far the variances are usually off their proportions: a factor of about three in the standard deviation.
+const PROPORTION_STD: f64 = 2.2;
+/// Scoring settles in four to ten steps, more where a component vanishes.
+const MAX_ITERATIONS: usize = 40;
+/// Changes below this are the end: far below how well variances can be known.
+const SETTLED: f64 = 1e-6;
+/// A variance falls or grows by no more than a factor of ten a step, …
+const MAX_STEP: f64 = 2.3;
+/// … and ends at 1e-12 or 1e12 times what it began with: the data have no noise, or no bounds.
+const MAX_LOG_FACTOR: f64 = 27.6;
+
+/// A point's distances from its edge, and what they may be off by.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PointModel {
+    /// Distances from the edge, mm.
+    pub off_edge: Vector2<f64>,
+    /// How they follow the unknowns.
+    pub by_unknowns: SMatrix<f64, 2, NUM_UNKNOWNS>,
+    /// Their covariance as far as it is known, mm².
+    pub known: Matrix2<f64>,
+    /// What each component adds where its factor is one, mm².
+    pub open: [Matrix2<f64>; NUM_COMPONENTS],
+}
+
+impl PointModel {
+    /// The covariance with the components' factors.
+    pub fn covariance(&self, log_factors: &Vector3<f64>) -> Matrix2<f64> {
+        let open: Matrix2<f64> = self.open.iter().zip(log_factors).map(|(part, log)| part * log.exp()).sum();
+        self.known + open
+    }
+}
+
+/// What was found of the components.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Found {
+    /// Logarithms of the factors on the variances; zero where a component is not open.
+    pub log_factors: Vector3<f64>,
+    /// Their covariance.
+    pub covariance: Matrix3<f64>,
+}
+
+/// The points, and the components that are open.
+pub(super) struct Components {
+    points: Vec<PointModel>,
+    is_open: [bool; NUM_COMPONENTS],
+}
+
+impl Components {
+    pub fn new(points: Vec<PointModel>) -> Self {
+        let is_open = [0, 1, 2].map(|idx| points.iter().any(|point| point.open[idx].trace() > 0.0));
+        Self { points, is_open }
+    }
+
+    pub fn is_any_open(&self) -> bool {
+        self.is_open.contains(&true)
+    }
+
+    /// Sum of the squared distances over their covariances.
+    pub fn chi_square(&self, log_factors: &Vector3<f64>) -> f64 {
+        let of_point = |point: &PointModel| {
+            let weight = point.covariance(log_factors).try_inverse().unwrap_or_default();
+            point.off_edge.dot(&(weight * point.off_edge))
+        };
+        self.points.iter().map(of_point).sum()
+    }
+
+    /// The factors of greatest likelihood, from a start, and what is known of them.
+    ///
+    /// # Errors
+    /// [`SolveError::Undetermined`] if the points leave an unknown free.
+    pub fn fit(&self, start: Vector3<f64>) -> Result<Found, SolveError> {
+        let mut log_factors = start;
+        for _ in 0..MAX_ITERATIONS {
+            let (score, information) = self.scoring(&log_factors)?;
+            let step = inverse_of_open(&information) * score;
+            let before = log_factors;
+            for idx in (0..NUM_COMPONENTS).filter(|idx| self.is_open[*idx]) {
+                let stepped = before[idx] + step[idx].clamp(-MAX_STEP, MAX_STEP);
+                log_factors[idx] = stepped.clamp(-MAX_LOG_FACTOR, MAX_LOG_FACTOR);
+            }
+            if (log_factors - before).amax() < SETTLED {
+                break;
+            }
+        }
+        let (_, information) = self.scoring(&log_factors)?;
+        Ok(Found { log_factors, covariance: inverse_of_open(&information) })
+    }
+
+    /// How the likelihood rises with the logarithms, and the information about them.
+    ///
+    /// With V the covariance of all distances, B a component's part of it, P = V⁻¹ − V⁻¹ J H⁻¹ Jᵀ V⁻¹ and y the distances: the
+    /// score is ½ (yᵀ P B P y − tr(P B)), the information ½ tr(P B P B'). V and B are blocks of two, so sums over the points
+    /// suffice.
+    fn scoring(&self, log_factors: &Vector3<f64>) -> Result<(Vector3<f64>, Matrix3<f64>), SolveError> {
+        let mut hessian = SMatrix::<f64, NUM_UNKNOWNS, NUM_UNKNOWNS>::zeros();
+        let mut pull = SMatrix::<f64, NUM_UNKNOWNS, 1>::zeros();
+        let weights: Vec<Matrix2<f64>> = self
+            .points
+            .iter()
+            .map(|point| {
+                let weight = point.covariance(log_factors).try_inverse().unwrap_or_default();
+                let weighted = point.by_unknowns.transpose() * weight;
+                hessian += weighted * point.by_unknowns;
+                pull += weighted * point.off_edge;
+                weight
+            })
+            .collect();
+        let inverse = inverse_of(&hessian)?;
+        let fitted = inverse * pull;
+        let (mut score, mut information) = self.prior(log_factors);
+        let mut losses = [SMatrix::<f64, NUM_UNKNOWNS, NUM_UNKNOWNS>::zeros(); NUM_COMPONENTS];
+        for (point, weight) in self.points.iter().zip(&weights) {
+            let left = weight * (point.off_edge - point.by_unknowns * fitted);
+            let by_unknowns = weight * point.by_unknowns;
+            let spread = by_unknowns * inverse * by_unknowns.transpose();
+            let parts: [Matrix2<f64>; NUM_COMPONENTS] =
+                std::array::from_fn(|idx| point.open[idx] * log_factors[idx].exp());
+            for (row, part) in parts.iter().enumerate() {
+                score[row] += 0.5 * (left.dot(&(part * left)) - (part * (weight - spread)).trace());
+                losses[row] += by_unknowns.transpose() * part * by_unknowns;
+                for (column, other) in parts.iter().enumerate() {
+                    let own = (weight * part * weight * other).trace();
+                    let shared = (part * weight * other * spread).trace();
+                    information[(row, column)] += 0.5 * own - shared;
+                }
+            }
+        }
+        for (row, loss) in losses.iter().enumerate() {
+            for (column, other) in losses.iter().enumerate() {
+                information[(row, column)] += 0.5 * (inverse * loss * inverse * other).trace();
+            }
+        }
+        // A component that is not open has no information; its row must not spoil the others'.
+        for idx in (0..NUM_COMPONENTS).filter(|idx| !self.is_open[*idx]) {
+            score[idx] = 0.0;
+            information.row_mut(idx).fill(0.0);
+            information.column_mut(idx).fill(0.0);
+        }
+        Ok((score, information))
+    }
+
+    /// The prior's: open components keep near each other.
+    fn prior(&self, log_factors: &Vector3<f64>) -> (Vector3<f64>, Matrix3<f64>) {
+        let is_open = Vector3::from(self.is_open.map(|is_open| if is_open { 1.0 } else { 0.0 }));
+        let weight = PROPORTION_STD.powi(-2);
+        let information = (Matrix3::from_diagonal(&is_open) - is_open * is_open.transpose() / is_open.sum()) * weight;
+        (-information * log_factors, information)
+    }
+}
+
+/// The inverse over the components that have information; zero elsewhere.
+fn inverse_of_open(information: &Matrix3<f64>) -> Matrix3<f64> {
+    let eigen = information.symmetric_eigen();
+    let least = 1e-9 * eigen.eigenvalues.amax();
+    let inverted = eigen.eigenvalues.map(|value| if value > least { value.recip() } else { 0.0 });
+    eigen.eigenvectors * Matrix3::from_diagonal(&inverted) * eigen.eigenvectors.transpose()
+}
