@@ -144,8 +144,6 @@ fn planned_stations_bring_what_was_said() {
                         before = after;
                     }
                     let solution = solved(&session);
-                    let num_used = solution.plate.as_ref().map_or(solution.stations.len(), |plate| plate.points.len());
-                    assert_eq!(num_used, session.stations.len(), "every planned station saw its edge or tip");
                     std_mm(&solution) / before
                 })
                 .collect();
