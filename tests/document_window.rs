@@ -178,8 +178,8 @@ fn what_is_known_of_targets_is_shown_typed_and_undone() {
         harness
     };
     for (name, shown) in [
-        ("three-targets.json", "plate: right-angle plate · 18 of 18 stations used"),
-        ("workpiece.json", "teeth: workpiece · 2 of 2 stations used · pitch 15 mm · height 10 mm"),
+        ("three-targets.json", "right-angle plate · 18 of 18 stations used"),
+        ("workpiece.json", "workpiece · 2 of 2 stations used · pitch 15 mm · height 10 mm"),
     ] {
         open(name).get_by_label(shown);
     }
