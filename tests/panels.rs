@@ -557,18 +557,19 @@ fn a_finding_is_mended_by_its_button_and_by_enter() {
 
 #[test]
 fn arrow_keys_go_through_the_findings_and_each_shows_its_evidence() {
+    let ball = Target::ball(15.0);
     let findings = one_finding_a_plot();
     for size in [[520.0, 640.0], [948.0, 792.0]] {
         let mut harness = diagnosing(made_up(one_finding_a_plot())).harness_of_size(size);
         for (idx, finding) in findings.iter().enumerate() {
             harness.get_by_label(&finding_name(idx));
             match &finding.evidence.plot {
-                Some(plot) => harness.get_by_label(fault_words::plot_title(plot)),
-                None => harness.get_by_label(panel_words::STATIONS_AGREE),
+                Some(plot) => harness.get_by_label(&fault_words::plot_title(plot, &ball)),
+                None => harness.get_by_label(panel_words::stations_agree(&ball)),
             };
             press(&mut harness, Key::ArrowDown);
         }
-        harness.get_by_label(panel_words::STATIONS_AGREE);
+        harness.get_by_label(panel_words::stations_agree(&ball));
         assert!(harness.state().commands.is_empty());
     }
 }
@@ -591,10 +592,11 @@ fn the_next_step_stands_in_the_band_of_the_comparison() {
 
 #[test]
 fn where_nothing_was_found_the_panel_says_what_was_looked_at() {
+    let ball = Target::ball(15.0);
     let harness = diagnosing(made_up(Vec::new())).harness();
     harness.get_by_label(fault_words::NOTHING_FOUND);
-    harness.get_by_label(panel_words::STATIONS_AGREE);
-    for line in panel_words::CHECKED {
+    harness.get_by_label(panel_words::stations_agree(&ball));
+    for line in panel_words::checked(&ball) {
         harness.get_by_label(line);
     }
 }

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use handeye::calibrate::{BallProblem, Method, Mount, SideChoice, Solution, Warning, solve};
+use handeye::calibrate::{Method, Mount, SideChoice, Solution, Warning, solve};
 use handeye::geometry::{Profile, Rigid, Transform, Vec3, so3};
 use handeye::plan::{Limits, Plan, PlanRefusal, PlannedStation, RoughCell, from_nothing, next_stations};
 use handeye::session::model::UnknownFields;
@@ -39,11 +39,10 @@ fn options(seed: u64, mount: Mount) -> SimulationOptions {
     SimulationOptions { seed, mount, num_points: 120, num_stations: 8, ..SimulationOptions::default() }
 }
 
-fn solved(session: &Session) -> (BallProblem, Solution) {
+fn solved(session: &Session) -> Solution {
     let measured = measure(session, None, &mut Unwatched).expect("not cancelled");
     let problem = ball_problem(session, &measured).expect("a ball");
-    let solution = solve(&problem, Method::BallBundle).expect("solvable");
-    (problem, solution)
+    solve(&problem, Method::BallBundle).expect("solvable")
 }
 
 fn std_mm(solution: &Solution) -> f64 {
@@ -114,7 +113,7 @@ fn profile(session: &Session, ball: Vec3, noise: &mut Noise) -> Profile {
 }
 
 fn planned(session: &Session, limits: &Limits, num: usize) -> (Plan, Solution) {
-    let (problem, solution) = solved(session);
+    let solution = solved(session);
     (next_stations(&solution, limits, num).expect("a plan"), solution)
 }
 
@@ -133,7 +132,7 @@ fn a_planned_station_brings_what_was_said() {
                 for station in &plan.stations {
                     add_station(&mut session, &pose(station), 21, &mut noise);
                 }
-                let (_, solution) = solved(&session);
+                let solution = solved(&session);
                 let predicted = plan.stations[1].workspace_point_std_mm.expect("determined");
                 assert!(predicted < plan.stations[0].workspace_point_std_mm.expect("determined"));
                 std_mm(&solution) / predicted
@@ -154,7 +153,7 @@ fn the_first_planned_station_beats_random_ones() {
             let with = |base_from_flange: &Rigid, noise: &mut Noise| {
                 let mut session = session.clone();
                 add_station(&mut session, base_from_flange, 21, noise);
-                std_mm(&solved(&session).1)
+                std_mm(&solved(&session))
             };
             let mut noise = Noise(seed);
             let by_plan = with(&pose(&plan.stations[0]), &mut noise);
@@ -260,7 +259,7 @@ fn little_rotation_is_made_up_for_by_much() {
     for station in &plan.stations {
         add_station(&mut grown, &pose(station), 21, &mut noise);
     }
-    let ratio = std_mm(&solved(&grown).1) / last;
+    let ratio = std_mm(&solved(&grown)) / last;
     assert!((0.7..1.4).contains(&ratio), "{ratio}");
 }
 
@@ -274,7 +273,7 @@ fn single_sections_are_planned_as_single_sections() {
         add_station(&mut session, &pose(station), 1, &mut noise);
     }
     let predicted = plan.stations[1].workspace_point_std_mm.expect("determined");
-    let ratio = std_mm(&solved(&session).1) / predicted;
+    let ratio = std_mm(&solved(&session)) / predicted;
     // The scatter of twelve single sections says less about the noise than that of sweeps.
     assert!((0.6..1.5).contains(&ratio), "{ratio}");
 }
@@ -321,7 +320,7 @@ fn a_plan_from_nothing_makes_a_calibration() {
             assert!(off.norm() < 60.0, "{mount:?}: the ball is off by {off}");
             add_station(&mut session, &at, 21, &mut noise);
         }
-        let (_, solution) = solved(&session);
+        let solution = solved(&session);
         let ratio = std_mm(&solution) / stds[7].expect("determined");
         assert!((0.6..1.6).contains(&ratio), "{mount:?}: {ratio}");
     }
@@ -330,7 +329,7 @@ fn a_plan_from_nothing_makes_a_calibration() {
 #[test]
 fn impossible_limits_and_cells_are_refused() {
     let session = simulate(&options(1, Mount::OnFlange));
-    let (problem, solution) = solved(&session);
+    let solution = solved(&session);
     let refused = |limits: &Limits| next_stations(&solution, limits, 1).expect_err("impossible");
     for limits in [
         Limits { max_tilt_deg: 0.0, max_spin_deg: 0.0, ..Limits::default() },
@@ -343,7 +342,7 @@ fn impossible_limits_and_cells_are_refused() {
     let cell = rough(&session, -Vec3::z());
     for cell in [
         RoughCell { looks_along_in_base: Vec3::zeros(), ..cell },
-        RoughCell { radius_mm: 0.0, ..cell },
+        RoughCell { radius_mm: -1.0, ..cell },
         RoughCell { target_in_base_mm: Vec3::new(f64::NAN, 0.0, 0.0), ..cell },
     ] {
         assert_eq!(from_nothing(&cell, &Limits::default(), 3), Err(PlanRefusal::Undetermined), "{cell:?}");

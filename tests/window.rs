@@ -11,7 +11,7 @@ use handeye::app::{Command, NoticeKind, Workbench};
 use handeye::diagnose::Severity;
 use handeye::session::edit::CellValue;
 use handeye::session::table::Column;
-use handeye::session::{self, Edit, Place, samples};
+use handeye::session::{self, Edit, Place, Target, samples};
 use handeye::text::start::{open_sample, sample_lesson};
 use handeye::text::{poses as pose_words, shell as shell_words, start as start_words};
 use handeye::ui::actions::Action;
@@ -90,7 +90,7 @@ fn a_click_on_a_sample_opens_and_solves_it() {
 fn where_nothing_is_wrong_the_way_leads_along_the_rail() {
     let mut harness = window_with("clean-sweeps.json");
     for (next, step) in [
-        (shell_words::NEXT_ARCS, Step::Arcs),
+        (shell_words::next_arcs(&Target::ball(15.0)), Step::Arcs),
         (shell_words::NEXT_POSES, Step::Poses),
         (shell_words::NEXT_COMPARE, Step::Compare),
         (shell_words::NEXT_DIAGNOSIS, Step::Diagnosis),

@@ -3,20 +3,20 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use crate::calibrate::{BallProblem, Method, MethodResult, best_available, solve_all};
-use crate::diagnose::{Case, diagnose};
+use crate::calibrate::{BallProblem, Method, MethodResult, Problem, best_available};
+use crate::diagnose::diagnose_any;
 use crate::geometry::{PoseConvention, Rigid, Vec3};
 use crate::plan::{Limits, Plan, RoughCell, from_nothing, next_stations};
 use crate::report::digits::fixed;
 use crate::report::result_file::plan_file;
-use crate::session::{self, Session, ball_problem, measure};
+use crate::session::{self, Session, measure, problem};
 use crate::text::cli as words;
 use crate::text::diagnosis::fault_message;
 use crate::watch::Unwatched;
 
 use super::{EXIT_NOTHING_COMPUTED, EXIT_WRONG_INPUT, fail};
 
-/// Beyond, the laser grazes the ball.
+/// Beyond, the laser grazes what it lights.
 const MAX_TILT_DEG: f64 = 80.0;
 
 /// Arguments of `handeye plan`.
@@ -29,26 +29,26 @@ pub struct PlanArgs {
     /// How many stations to plan
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..=100))]
     pub stations: u16,
-    /// Most tilt of the range axis from the middle of the stations, degrees
+    /// Most tilt of the range axis from the middle of the stations (of a plate: of those at the same edge), degrees
     #[arg(long, value_name = "DEG", default_value_t = Limits::default().max_tilt_deg, value_parser = tilt)]
     pub max_tilt_deg: f64,
     /// Most turn about the range axis, either way, degrees
     #[arg(long, value_name = "DEG", default_value_t = Limits::default().max_spin_deg, value_parser = spin)]
     pub max_spin_deg: f64,
-    /// Least and greatest distance of the ball's centre along the range axis, mm; as in the session if not given
+    /// Least and greatest distance of the ball's centre, tip or edge along the range axis, mm; as in the session if not given
     #[arg(long, num_args = 2, value_names = ["MIN", "MAX"], value_parser = finite)]
     pub standoff_mm: Option<Vec<f64>>,
-    /// How far the ball's centre may be from the middle of the profile, mm; as in the session if not given
+    /// How far the ball's centre, tip or edge may be from the middle of the profile, mm; as in the session if not given
     #[arg(long, value_name = "MM", value_parser = finite)]
     pub half_width_mm: Option<f64>,
     /// Where the sensor is on the flange (in the base if it stands beside the robot), roughly: mm and the robot's own angles.
-    /// For a session that cannot be solved yet
+    /// For a session with a ball or a tip that cannot be solved yet
     #[arg(
         long, num_args = 6, value_names = ["X", "Y", "Z", "A", "B", "C"], value_parser = finite, requires = "ball_at"
     )]
     pub sensor_at: Option<Vec<f64>>,
-    /// Where the ball is in the base (on the flange if the sensor stands beside the robot), roughly, mm
-    #[arg(long, num_args = 3, value_names = ["X", "Y", "Z"], value_parser = finite, requires = "sensor_at")]
+    /// Where the ball or tip is in the base (on the flange if the sensor stands beside the robot), roughly, mm
+    #[arg(long, visible_alias = "tip-at", num_args = 3, value_names = ["X", "Y", "Z"], value_parser = finite, requires = "sensor_at")]
     pub ball_at: Option<Vec<f64>>,
     /// The direction in the base (of the flange if the sensor stands beside the robot) along which the sensor looks in the
     /// middle of all stations; with --sensor-at
@@ -85,22 +85,23 @@ pub fn run(args: &PlanArgs) -> ExitCode {
 /// The plan, and the method whose solution it rests on; none for a plan from nothing.
 fn planned(args: &PlanArgs, session: &Session) -> Result<(Plan, Option<Method>), String> {
     let measured = measure(session, None, &mut Unwatched).map_err(|cancelled| cancelled.to_string())?;
-    let problem = ball_problem(session, &measured).map_err(|refusal| refusal.to_string())?;
-    let results = solve_all(&problem, &Method::BALL, &mut Unwatched).map_err(|cancelled| cancelled.to_string())?;
+    let problem = problem(session, &measured).map_err(|refusal| refusal.to_string())?;
+    let results = problem.solve_all(problem.methods(), &mut Unwatched).map_err(|cancelled| cancelled.to_string())?;
     let num = usize::from(args.stations);
     let limits = limits(args);
     if let Some(solution) = best_available(&results) {
-        let case = Case { session, problem: &problem, results: &results };
-        let diagnosis = diagnose(case, &mut Unwatched).map_err(|cancelled| cancelled.to_string())?;
+        let diagnosis =
+            diagnose_any(session, &problem, &results, &mut Unwatched).map_err(|cancelled| cancelled.to_string())?;
         if let Some(first) = diagnosis.findings.first().filter(|_| !diagnosis.allows_planning()) {
             return Err(words::mend_before_planning(first.fault.code(), &fault_message(&first.fault, session)));
         }
         let plan = next_stations(solution, &limits, num).map_err(|refusal| refusal.to_string())?;
         return Ok((plan, Some(solution.method)));
     }
-    let cell =
-        rough_cell(args, session, &problem).ok_or_else(|| words::nothing_to_plan_from(&first_reason(&results)))?;
-    let limits = Limits { standoff_mm: limits.standoff_mm.or_else(|| standoff_about_reference(&problem)), ..limits };
+    let nothing = || words::nothing_to_plan_from(&first_reason(&results), &session.target);
+    let (Problem::Ball(problem) | Problem::Point(problem)) = &problem else { return Err(nothing()) };
+    let cell = rough_cell(args, session, problem).ok_or_else(nothing)?;
+    let limits = Limits { standoff_mm: limits.standoff_mm.or_else(|| standoff_about_reference(problem)), ..limits };
     let plan = from_nothing(&cell, &limits, num).map_err(|refusal| refusal.to_string())?;
     Ok((plan, None))
 }
@@ -140,18 +141,19 @@ fn rough_cell(args: &PlanArgs, session: &Session, problem: &BallProblem) -> Opti
 fn table(session: &Session, plan: &Plan, method: Option<Method>) -> String {
     let convention: &PoseConvention = session.robot.notation.convention;
     let std = |std_mm: Option<f64>| std_mm.map_or_else(|| "–".to_owned(), |std_mm| fixed(std_mm, 3));
-    let mut out = words::plan_head(&session.name, plan.stations.len(), method, plan.workspace_point_std_mm);
-    let [first, second, third] = convention.angle_names;
-    out.push_str(&words::plan_columns([first, second, third]));
+    let mut out = words::plan_head(session, plan.stations.len(), method, plan.workspace_point_std_mm);
+    let has_edges = plan.stations.iter().any(|station| station.edge.is_some());
+    out.push_str(&words::plan_columns(convention.angle_names, has_edges));
     for (idx, station) in plan.stations.iter().enumerate() {
         let position = station.base_from_flange.translation_mm();
         let [a, b, c] = convention.angles_deg_from_rotation(&station.base_from_flange.rotation());
         let pose = [position.x, position.y, position.z].map(|value| fixed(value, 2));
         let angles = [a, b, c].map(|value| fixed(value, 3));
         let turned = [station.tilt_deg, station.azimuth_deg, station.spin_deg].map(|value| fixed(value, 0));
-        out.push_str(&words::plan_row(idx + 1, &pose, &angles, &turned, &std(station.workspace_point_std_mm)));
+        let std = std(station.workspace_point_std_mm);
+        out.push_str(&words::plan_row(idx + 1, station.edge, &pose, &angles, &turned, &std));
     }
-    out.push_str(&words::plan_foot(session.mount, convention.label));
+    out.push_str(&words::plan_foot(session));
     out
 }
 

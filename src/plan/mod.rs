@@ -113,7 +113,7 @@ pub struct RoughCell {
     pub flange_from_sensor: Rigid,
     /// The ball in the base; in the flange for [`Mount::Fixed`]. mm.
     pub target_in_base_mm: Vec3,
-    /// The ball's radius, mm.
+    /// The ball's radius, mm; 0 of a tip.
     pub radius_mm: f64,
     /// The robot's noise as far as it is stated; that of a good arm otherwise.
     pub noise: Noise,

@@ -29,6 +29,10 @@ const NUM_CAPTURES: u32 = 21;
 /// Points on an arc, and the angle either side of its top that they cover, degrees.
 const NUM_POINTS: u32 = 200;
 const HALF_ANGLE_DEG: f64 = 60.0;
+/// A tip is seen once: how well along either axis of the laser plane and, by the aim, across it, mm ...
+const TIP_STD_MM: f64 = 0.03;
+/// ... and how far from the middle of the profile and from the stand-off it may be, mm.
+const TIP_VIEW_MM: f64 = 10.0;
 /// How well the mounting and the ball are known by guess: degrees and mm.
 const GUESS_STD_DEG: f64 = 10.0;
 const GUESS_STD_MM: f64 = 20.0;
@@ -49,7 +53,8 @@ impl Nominal {
         let mounting = rough.flange_from_sensor;
         let [least, most] = limits.standoff_mm.unwrap_or([STANDOFF_MM; 2]);
         let standoff_mm = f64::midpoint(least, most);
-        let slack = Vec3::new(1.0, 0.0, 1.0) * (VIEW_RADII * rough.radius_mm);
+        let is_tip = rough.radius_mm == 0.0;
+        let slack = Vec3::new(1.0, 0.0, 1.0) * if is_tip { TIP_VIEW_MM } else { VIEW_RADII * rough.radius_mm };
         let middle = Vec3::new(0.0, 0.0, standoff_mm);
         let room = Room::new(limits, [middle - slack, middle + slack].into_iter());
         let (balls, about_sensor) = usual_sweep(rough, standoff_mm);
@@ -74,11 +79,11 @@ pub(super) fn checked(rough: &RoughCell) -> Result<Vec3, PlanRefusal> {
     let looks_along = rough.looks_along_in_base.try_normalize(0.0).ok_or(PlanRefusal::Undetermined)?;
     let mounting = rough.flange_from_sensor.to_homogeneous();
     let mut figures = mounting.iter().chain(rough.target_in_base_mm.iter()).chain(looks_along.iter());
-    let is_sound = figures.all(|v| v.is_finite()) && rough.radius_mm > 0.0;
+    let is_sound = figures.all(|v| v.is_finite()) && rough.radius_mm >= 0.0;
     if is_sound { Ok(looks_along) } else { Err(PlanRefusal::Undetermined) }
 }
 
-/// Where the ball is at each capture of a usual sweep, and what that says about (rotation, translation).
+/// Where the ball is at each capture of a usual sweep, or a tip at its only one, and what that says about (rotation, translation).
 pub(super) fn usual_sweep(rough: &RoughCell, standoff_mm: f64) -> (Vec<Vec3>, Matrix6<f64>) {
     let sweep = sweep(rough, standoff_mm);
     // With the sensor at the base's origin the ball is where a capture sees it.
@@ -100,10 +105,15 @@ fn sweep(rough: &RoughCell, standoff_mm: f64) -> Vec<CentreObservation> {
     let position_std_mm = rough.noise.position_std_mm.unwrap_or(POSITION_STD_MM);
     let turned_mm = orientation_std_rad * ball_in_flange.coords.norm();
     let pose_covariance = Mat3::identity() * (position_std_mm.powi(2) + turned_mm.powi(2) * 2.0 / 3.0);
-    (0..NUM_CAPTURES)
+    let is_tip = rough.radius_mm == 0.0;
+    (0..if is_tip { 1 } else { NUM_CAPTURES })
         .map(|idx| {
             let y_mm = rough.radius_mm * (FIRST_SECTION_RADII - STEP_RADII * f64::from(idx));
-            let by_points = section_information(y_mm / rough.radius_mm);
+            let by_points = if is_tip {
+                Mat3::identity() * TIP_STD_MM.powi(-2)
+            } else {
+                section_information(y_mm / rough.radius_mm)
+            };
             let damp = Mat3::identity() + by_points * pose_covariance;
             let information = damp.try_inverse().map_or(by_points, |damp| damp * by_points);
             let pose = Rigid::translation(0.0, -y_mm, -standoff_mm);

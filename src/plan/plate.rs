@@ -34,6 +34,8 @@ pub(super) struct Plate {
     /// Where an edge may be in the sensor frame.
     pub room: Room,
     pub edges: Vec<EdgeModel>,
+    /// The other edge stays at least so far from the point on the line, mm: a profile with both is read wrongly.
+    pub least_apart_mm: f64,
     /// What is known of sensor and plate; `None` where there is no doubt that the edge is seen.
     pub doubt: Option<PlateInformation>,
 }
@@ -62,6 +64,7 @@ impl Plate {
             pose_variances: noise.map(|std| std * std),
             room: Room::new(limits, reduced.points.iter().map(|point| point.point_in_sensor)),
             edges: Vec::new(),
+            least_apart_mm: least_apart_mm(&reduced.state, &reduced.points),
             doubt: None,
         };
         if plate.room.is_empty() {
@@ -168,7 +171,9 @@ impl Subject<NUM_UNKNOWNS> for Plate {
         let Aim { point_in_sensor, point_in_base, .. } = self.aim_at(candidate);
         let edge_in_base = self.state.base_from_plate.rotation * unit_along(model.edge);
         let normal = base_from_sensor * Vec3::y();
-        if edge_in_base.dot(&normal).abs() < LEAST_CROSSING {
+        let is_useful = edge_in_base.dot(&normal).abs() >= LEAST_CROSSING
+            && to_other_edge_mm(&self.state, model.edge, &point_in_base, &normal) >= self.least_apart_mm;
+        if !is_useful {
             return None;
         }
         let origin = point_in_base - base_from_sensor * point_in_sensor;
@@ -187,6 +192,31 @@ impl Subject<NUM_UNKNOWNS> for Plate {
             }
         }
         Some(by_unknowns.transpose() * information * by_unknowns)
+    }
+}
+
+/// How near the other edge came to the point on the line so far, mm.
+pub(super) fn least_apart_mm(state: &PlateState, points: &[EdgePoint]) -> f64 {
+    let apart_mm = |point: &EdgePoint| {
+        let normal = base_from_sensor(state, point) * Vec3::y();
+        to_other_edge_mm(state, point.edge, &point.in_base(&state.flange_from_sensor), &normal)
+    };
+    points.iter().map(apart_mm).fold(f64::INFINITY, f64::min)
+}
+
+/// From a point on an edge to where the laser plane meets the other one, mm; infinite if it does so off the plate.
+fn to_other_edge_mm(state: &PlateState, edge: Edge, point_in_base: &Vec3, normal: &Vec3) -> f64 {
+    let other = state.base_from_plate.rotation
+        * match edge {
+            Edge::P => Vec3::y(),
+            Edge::Q => Vec3::x(),
+        };
+    let corner = state.base_from_plate.translation.vector;
+    let along_mm = normal.dot(&(point_in_base - corner)) / normal.dot(&other);
+    if along_mm.is_finite() && along_mm > 0.0 {
+        (corner + other * along_mm - point_in_base).norm()
+    } else {
+        f64::INFINITY
     }
 }
 

@@ -15,7 +15,7 @@ use crate::geometry::{Base, Flange, Mat3, Rigid, Transform, Vec3, so3};
 use super::ball::{Room, extent};
 use super::information::Information;
 use super::orientation::Orientations;
-use super::plate::{EdgeModel, Plate, PlateInformation, along, pose_variances};
+use super::plate::{EdgeModel, Plate, PlateInformation, along, least_apart_mm, pose_variances};
 use super::rough::{GUESS_STD_DEG, GUESS_STD_MM, Guess, LEAST_STD_MM};
 use super::search::{Search, Taken};
 use super::{Limits, PlanRefusal, PlannedStation, View};
@@ -179,7 +179,11 @@ pub fn next_rough_edge(
         })
         .collect::<Result<_, PlanRefusal>>()?;
     let pose_variances = pose_variances(&cell.noise);
-    let plate = Plate { mount: cell.mount, state, pose_variances, room, edges, doubt: Some(covariance) };
+    // By the first estimate of the plate the other edge is not known well enough to come nearer to it.
+    let points: Vec<EdgePoint> = seen.iter().map(|seen| seen.point(0, cell.mount)).collect();
+    let least_apart_mm = least_apart_mm(&state, &points);
+    let plate =
+        Plate { mount: cell.mount, state, pose_variances, room, edges, least_apart_mm, doubt: Some(covariance) };
     let of_seen =
         |seen: &SeenEdge| Taken { base_from_sensor: base_from_sensor(&seen.base_from_flange), edge: Some(seen.edge) };
     let of_avoided = |pose: &Transform<Base, Flange>| Taken { base_from_sensor: base_from_sensor(pose), edge: None };

@@ -43,7 +43,7 @@ pub(super) fn planned_stations(session: &Session, plan: &Plan) -> Vec<Value> {
 fn planned_station(session: &Session, station: &PlannedStation) -> Value {
     let convention = session.robot.notation.convention;
     let pose = &station.base_from_flange;
-    json!({
+    let mut entry = json!({
         "base_from_flange": {
             "translation_mm": vector(pose.translation_mm()),
             "euler_deg": convention.angles_deg_from_rotation(&pose.rotation()),
@@ -53,7 +53,11 @@ fn planned_station(session: &Session, station: &PlannedStation) -> Value {
         "azimuth_deg": station.azimuth_deg,
         "spin_deg": station.spin_deg,
         "workspace_point_std_mm": station.workspace_point_std_mm,
-    })
+    });
+    if let Some(edge) = station.edge {
+        entry["edge"] = json!(edge.symbol());
+    }
+    entry
 }
 
 fn finding_entry(session: &Session, finding: &Finding) -> Value {

@@ -67,8 +67,11 @@ fn next(workbench: &Workbench, step: Step) -> Option<(String, Action)> {
     if num_findings > 0 && step != Step::Diagnosis {
         return Some((words::next_findings(num_findings), Action::GoTo(Step::Diagnosis)));
     }
+    let is_scanned = document.session.target == Target::Workpiece && step != Step::Verify;
     let (label, action) = match step {
-        Step::Session | Step::Capture => (words::NEXT_ARCS, Action::GoTo(Step::Arcs)),
+        // Nothing is computed from it that the other steps would show.
+        _ if is_scanned => (words::NEXT_VERIFY, Action::GoTo(Step::Verify)),
+        Step::Session | Step::Capture => (words::next_arcs(&document.session.target), Action::GoTo(Step::Arcs)),
         Step::Arcs => (words::NEXT_POSES, Action::GoTo(Step::Poses)),
         Step::Poses => (words::NEXT_COMPARE, Action::GoTo(Step::Compare)),
         Step::Compare => (words::NEXT_DIAGNOSIS, Action::GoTo(Step::Diagnosis)),
@@ -117,7 +120,8 @@ fn progress_or_summary(ui: &mut Ui, workbench: &Workbench, commands: &mut Vec<Co
         if document.session.stations.is_empty() {
             return;
         }
-        let summary = words::summary(stations().count(), &captures, results.elapsed.as_millis());
+        let elapsed_ms = (!results.methods.is_empty()).then_some(results.elapsed.as_millis());
+        let summary = words::summary(stations().count(), &captures, elapsed_ms);
         ui.label(theme::dim(ui, summary));
     } else {
         if workbench.solve_progress().is_none() && ui.button(words::SOLVE).clicked() {

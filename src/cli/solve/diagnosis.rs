@@ -97,5 +97,6 @@ fn next_pose(session: &Session, plan: &Plan) -> Option<String> {
     let position = named(["x", "y", "z"], station.base_from_flange.translation_mm().into(), " mm");
     let angles = convention.angles_deg_from_rotation(&station.base_from_flange.rotation());
     let angles = named(convention.angle_names, angles, "°");
-    Some(words::next_pose_line(&position, &angles, plan.workspace_point_std_mm, station.workspace_point_std_mm))
+    let (before_mm, after_mm) = (plan.workspace_point_std_mm, station.workspace_point_std_mm);
+    Some(words::next_pose_line(station.edge, &position, &angles, before_mm, after_mm))
 }

@@ -61,9 +61,11 @@ impl Column {
 #[must_use]
 pub fn columns(session: &Session) -> Vec<Column> {
     let captures = || session.stations.iter().flat_map(|station| &station.captures);
-    let mut columns = vec![Column::Used, Column::Label, Column::Side];
-    if session.target == Target::RightAnglePlate {
-        columns.push(Column::Edge);
+    let mut columns = vec![Column::Used, Column::Label];
+    match session.target {
+        Target::Ball { .. } => columns.push(Column::Side),
+        Target::RightAnglePlate => columns.push(Column::Edge),
+        Target::Point | Target::Workpiece | Target::Rgbd { .. } => {}
     }
     columns.extend((0..session.robot.notation.num_numbers()).map(Column::Number));
     let has_steps = session.stations.iter().any(|station| station.captures.len() > 1)

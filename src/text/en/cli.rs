@@ -1,10 +1,11 @@
 //! What the commands print.
 
-use crate::calibrate::{Method, Mount, Verdict, VerdictReason, Warning};
+use crate::calibrate::{Edge, Method, Mount, Verdict, VerdictReason, Warning};
 use crate::diagnose::Reason;
-use crate::session::Session;
+use crate::session::{Session, Target};
 
-use super::diagnosis::fault_message;
+use super::diagnosis::{fault_message, target_word};
+use super::edges::edge_name;
 use super::{method_name, method_short_name, plural, verdict_name, warning_message};
 
 /// The verdict with its reason, in one line.
@@ -55,33 +56,47 @@ pub fn mend_before_planning(code: &str, message: &str) -> String {
 
 /// There are neither stations nor a rough cell.
 #[must_use]
-pub fn nothing_to_plan_from(reason: &str) -> String {
-    format!(
-        "{}. For a plan before anything is measured say roughly where things are: --sensor-at X Y Z A B C --ball-at X Y Z",
-        reason.trim_end_matches('.')
-    )
+pub fn nothing_to_plan_from(reason: &str, target: &Target) -> String {
+    let way_out = match target {
+        Target::Ball { .. } => {
+            "For a plan before anything is measured say roughly where things are: --sensor-at X Y Z A B C --ball-at X Y Z"
+        }
+        Target::Point => {
+            "For a plan before anything is measured say roughly where things are: --sensor-at X Y Z A B C --tip-at X Y Z"
+        }
+        _ => "Measure three stations at each edge first, tilted and turned as far as the line allows",
+    };
+    format!("{}. {way_out}", reason.trim_end_matches('.'))
 }
 
 /// What a plan is for, and what is known before it.
 #[must_use]
-pub fn plan_head(session: &str, num_stations: usize, method: Option<Method>, std_mm: Option<f64>) -> String {
+pub fn plan_head(session: &Session, num_stations: usize, method: Option<Method>, std_mm: Option<f64>) -> String {
+    let captures = match session.target {
+        Target::Ball { .. } => "sweeps of 21 captures, a profiler of 0.01 mm",
+        _ => "single captures, a profiler that finds its target to 0.03 mm",
+    };
     let rests_on = method.map_or_else(
-        || "before anything is measured, for sweeps of 21 captures, a profiler of 0.01 mm and the robot's stated noise (0.02 mm, 0.005° where none is)"
-                .to_owned(),
+        || {
+            format!(
+                "before anything is measured, for {captures} and the robot's stated noise (0.02 mm, 0.005° where none is)"
+            )
+        },
         |method| {
             let std = std_mm.map_or_else(|| "not known yet".to_owned(), |std_mm| format!("± {std_mm:.3} mm"));
             format!("a point in the workspace now: {std} (1 σ, 3D; {})", method_short_name(method))
         },
     );
-    format!("{session} · {num_stations} station{} to measure next\n{rests_on}\n\n", plural(num_stations))
+    format!("{} · {num_stations} station{} to measure next\n{rests_on}\n\n", session.name, plural(num_stations))
 }
 
 /// Heads of a plan's columns.
 #[must_use]
-pub fn plan_columns(angle_names: [&str; 3]) -> String {
+pub fn plan_columns(angle_names: [&str; 3], has_edges: bool) -> String {
+    let edge = if has_edges { "edge " } else { "" };
     let [a, b, c] = angle_names.map(|name| format!("{name}/°"));
     format!(
-        "no. {:>10} {:>10} {:>10}  {a:>9} {b:>9} {c:>9}  {:>6} {:>8} {:>6}  {:>9}\n",
+        "no. {edge}{:>10} {:>10} {:>10}  {a:>9} {b:>9} {c:>9}  {:>6} {:>8} {:>6}  {:>9}\n",
         "x/mm", "y/mm", "z/mm", "tilt/°", "towards°", "turn/°", "σ then/mm"
     )
 }
@@ -90,26 +105,36 @@ pub fn plan_columns(angle_names: [&str; 3]) -> String {
 #[must_use]
 pub fn plan_row(
     number: usize,
+    edge: Option<Edge>,
     pose_mm: &[String; 3],
     angles_deg: &[String; 3],
     turned_deg: &[String; 3],
     std_mm: &str,
 ) -> String {
     let ([x, y, z], [a, b, c], [tilt, azimuth, spin]) = (pose_mm, angles_deg, turned_deg);
+    let edge = edge.map_or_else(String::new, |edge| format!("{:<5}", edge_name(edge)));
     format!(
-        "{number:<3} {x:>10} {y:>10} {z:>10}  {a:>9} {b:>9} {c:>9}  {tilt:>6} {azimuth:>8} {spin:>6}  {std_mm:>9}\n"
+        "{number:<3} {edge}{x:>10} {y:>10} {z:>10}  {a:>9} {b:>9} {c:>9}  {tilt:>6} {azimuth:>8} {spin:>6}  {std_mm:>9}\n"
     )
 }
 
 /// What a plan's columns mean.
 #[must_use]
-pub fn plan_foot(mount: Mount, convention: &str) -> String {
-    let line = match mount {
-        Mount::OnFlange => "flange in the base",
-        Mount::Fixed => "flange (with the ball) in the base",
+pub fn plan_foot(session: &Session) -> String {
+    let Session { target, mount, robot, .. } = session;
+    let what = target_word(target);
+    let carrier = match mount {
+        Mount::OnFlange => "flange in the base".to_owned(),
+        Mount::Fixed => format!("flange (with the {what}) in the base"),
+    };
+    let (at, to_do, of) = match target {
+        Target::Ball { .. } => (" at the first capture", "then sweep across the ball as at the other stations", ""),
+        Target::RightAnglePlate => ("", "the line crosses the edge that is named", " at that edge"),
+        _ => ("", "there bring the line onto the tip", ""),
     };
     format!(
-        "\nposes: {line} at the first capture, {convention}; then sweep across the ball as at the other stations\n\
-         tilt, towards, turn: of the range axis from the middle of the stations · σ then: with this station and those above\n"
+        "\nposes: {carrier}{at}, {}; {to_do}\n\
+         tilt, towards, turn: of the range axis from the middle of the stations{of} · σ then: with this station and those above\n",
+        robot.notation.convention.label
     )
 }

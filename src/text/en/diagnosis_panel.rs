@@ -1,5 +1,10 @@
 //! The diagnosis panel: its own words; those of the findings are in [`super::diagnosis`].
 
+use crate::calibrate::Edge;
+use crate::session::Target;
+
+use super::diagnosis::target_word;
+use super::edges::edge_name;
 use super::shell::count;
 
 /// In place of the panel without a session.
@@ -21,13 +26,33 @@ pub const DIAGNOSE: &str = "Diagnose";
 /// Stops what is under way.
 pub const CANCEL: &str = "Cancel";
 /// What was looked for, group by group.
-pub const CHECKED: [&str; 5] = [
-    "poses: convention, order, inverse, units, twins",
-    "stations: wrong, stale or mixed-up poses, wrong sides",
-    "rotations: enough of them, and about more than one axis",
-    "scene: radius, profile scale, mirrored axes, drift, a switched tool",
-    "travel: along the laser's normal, steps as commanded",
-];
+#[must_use]
+pub const fn checked(target: &Target) -> &'static [&'static str] {
+    match target {
+        Target::RightAnglePlate => &[
+            "poses: convention, order, inverse, units",
+            "stations: wrong or stale poses, points off their edges",
+            "rotations: enough of them, and about more than one axis",
+            "edges: enough points on both, another mounting that fits as well",
+            "residuals: two halves that agree, a normal distribution",
+        ],
+        Target::Point => &[
+            "poses: convention, order, inverse, units, twins",
+            "stations: wrong, stale or mixed-up poses",
+            "rotations: enough of them, and about more than one axis",
+            "scene: drift, a switched tool",
+            "residuals: two halves that agree, a normal distribution",
+        ],
+        Target::Ball { .. } | Target::Workpiece | Target::Rgbd { .. } => &[
+            "poses: convention, order, inverse, units, twins",
+            "stations: wrong, stale or mixed-up poses, wrong sides",
+            "rotations: enough of them, and about more than one axis",
+            "scene: radius, profile scale, mirrored axes, drift, a switched tool",
+            "travel: along the laser's normal, steps as commanded",
+        ],
+    }
+}
+
 /// Above that list.
 pub const CHECKED_TITLE: &str = "What was looked at:";
 /// Name of the button that cancels the diagnosis.
@@ -95,7 +120,14 @@ pub fn same_as(names: &str) -> String {
 }
 
 /// Title where a finding has no plot of its own, and where there is none: left-out errors.
-pub const STATIONS_AGREE: &str = "Each station against the others";
+#[must_use]
+pub const fn stations_agree(target: &Target) -> &'static str {
+    match target {
+        Target::RightAnglePlate => "Each point off its edge by the others",
+        _ => "Each station against the others",
+    }
+}
+
 /// Without left-out errors.
 pub const TOO_FEW_TO_LEAVE_OUT: &str = "Too few stations to hold each against the others.";
 /// Axis title.
@@ -306,11 +338,10 @@ pub fn now_at(std_mm: &str) -> String {
 pub const PLANNING: &str = "planning …";
 /// While the result is one to be mended.
 pub const NO_PLAN_YET: &str = "Mend the first finding; poses planned from a wrong result lead nowhere.";
-/// With a plate or a tip.
-pub const PLANS_FOR_BALLS: &str =
-    "Poses are planned for a ball only. For a plate or a tip, tilt and turn the tool as far as the line allows.";
 /// Before there is a plan.
 pub const NO_PLAN: &str = "A plan needs a calibration to start from; the findings say what is missing.";
+/// Column: the edge of a plate.
+pub const EDGE: &str = "edge";
 /// Column.
 pub const TILT: &str = "tilt / °";
 /// Column.
@@ -342,12 +373,23 @@ pub const STANDOFF_TO: &str = "stand-off to";
 /// Where the stand-off is that of the stations measured.
 pub const STANDOFF_AS_MEASURED: &str = "as measured";
 /// What the limits are.
-pub const LIMITS_HINT: &str = "Angles are relative to the mean orientation of the stations; the stand-off is the distance of the ball's centre along the range axis";
+#[must_use]
+pub fn limits_hint(target: &Target) -> String {
+    let (of, seen) = match target {
+        Target::RightAnglePlate => (" at the same edge", "edge"),
+        Target::Ball { .. } => ("", "ball's centre"),
+        _ => ("", target_word(target)),
+    };
+    format!(
+        "Angles are relative to the mean orientation of the stations{of}; the stand-off is the distance of the {seen} along the range axis"
+    )
+}
 
 /// In the verdict's band: what one more station brings.
 #[must_use]
-pub fn gain(tilt_deg: &str, before_mm: &str, after_mm: &str) -> String {
-    format!("a station tilted {tilt_deg}° would bring ± {before_mm} → ± {after_mm} mm")
+pub fn gain(edge: Option<Edge>, tilt_deg: &str, before_mm: &str, after_mm: &str) -> String {
+    let at = edge.map_or_else(String::new, |edge| format!(" at edge {},", edge_name(edge)));
+    format!("a station{at} tilted {tilt_deg}° would bring ± {before_mm} → ± {after_mm} mm")
 }
 
 /// Before the next step in the band.

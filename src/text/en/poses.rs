@@ -2,9 +2,9 @@
 
 use crate::calibrate::{Side, SideChoice, Warning};
 use crate::geometry::PoseNotation;
-use crate::session::Row;
 use crate::session::check::Finding;
 use crate::session::table::{Column, column_name, column_unit};
+use crate::session::{Row, Target};
 
 use super::plural;
 
@@ -66,8 +66,16 @@ pub const KEYS_HINT: &str = "Type to replace · Enter or F2 to edit · Tab goes 
 pub const NOT_CLEARED: &str = "A pose and a label cannot be empty; Ctrl+Delete deletes the row.";
 /// Tip of the poses of a sweep that is folded.
 pub const FIRST_OF_SWEEP: &str = "The first capture of a sweep; editing unfolds it";
-/// Check of a capture without an arc.
-pub const NO_ARC: &str = "no arc";
+/// Check of a capture in whose profile the target was not found.
+#[must_use]
+pub const fn not_found(target: &Target) -> &'static str {
+    match target {
+        Target::Ball { .. } => "no arc",
+        Target::RightAnglePlate => "no edge",
+        Target::Point => "no tip",
+        Target::Workpiece | Target::Rgbd { .. } => "nothing found",
+    }
+}
 
 /// A column's head: name and unit.
 #[must_use]

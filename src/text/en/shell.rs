@@ -92,7 +92,7 @@ pub const STEP_VERIFY: &str = "Verify";
 /// What the rail's step does.
 pub const STEP_SESSION_HINT: &str = "Open a session and see what it holds";
 /// What the rail's step does.
-pub const STEP_ARCS_HINT: &str = "Every profile with its circle, and the radius along the sweep";
+pub const STEP_ARCS_HINT: &str = "Every profile with what was found of the target in it";
 /// What the rail's step does.
 pub const STEP_POSES_HINT: &str = "The stations' poses, and which of them take part";
 /// What the rail's step does.
@@ -113,7 +113,17 @@ pub const CHOOSE_SESSION: &str = "Choose a session";
 /// Before the next step's button.
 pub const NEXT: &str = "Next";
 /// Next step.
-pub const NEXT_ARCS: &str = "Look at the arcs";
+#[must_use]
+pub const fn next_arcs(target: &Target) -> &'static str {
+    match target {
+        Target::Ball { .. } => "Look at the arcs",
+        Target::RightAnglePlate => "Look at the edges",
+        _ => "Look at the profiles",
+    }
+}
+
+/// Next step with a workpiece.
+pub const NEXT_VERIFY: &str = "See what was scanned";
 /// Next step.
 pub const NEXT_POSES: &str = "Check the poses";
 /// Next step.
@@ -161,11 +171,15 @@ pub fn count(number: usize, singular: &str) -> String {
     if number == 1 { format!("1 {singular}") } else { format!("{number} {singular}s") }
 }
 
-/// What was solved, and in what time.
+/// What was solved, and in what time; what there is where nothing is solved.
 #[must_use]
-pub fn summary(num_stations: usize, captures: &str, elapsed_ms: u128) -> String {
-    let elapsed = if elapsed_ms == 0 { "under 1 ms".to_owned() } else { format!("{elapsed_ms} ms") };
-    format!("{}, {captures}, solved in {elapsed}", count(num_stations, "station"))
+pub fn summary(num_stations: usize, captures: &str, elapsed_ms: Option<u128>) -> String {
+    let solved = match elapsed_ms {
+        None => String::new(),
+        Some(0) => ", solved in under 1 ms".to_owned(),
+        Some(elapsed_ms) => format!(", solved in {elapsed_ms} ms"),
+    };
+    format!("{}, {captures}{solved}", count(num_stations, "station"))
 }
 
 /// Heading of the inspector.
@@ -211,9 +225,9 @@ pub fn left_out_hint(method: Method) -> &'static str {
 #[must_use]
 pub const fn target_in_sensor(target: &Target) -> &'static str {
     match target {
-        Target::RightAnglePlate => "point in sensor",
+        Target::Ball { .. } => "ball in sensor",
         Target::Point => "tip in sensor",
-        _ => "ball in sensor",
+        _ => "point in sensor",
     }
 }
 
@@ -333,14 +347,13 @@ pub const SHORTCUTS: &str = "Shortcuts";
 /// Heading of the help window.
 pub const ABOUT: &str = "About";
 /// The program in a sentence.
-pub const ABOUT_TEXT: &str =
-    "A workbench for the hand-eye calibration of robot-mounted laser profilers, after Lin and Mu (2019).";
+pub const ABOUT_TEXT: &str = "A workbench for the hand-eye calibration of robot-mounted laser profilers, after Lin and Mu (2019) and Chen et al. (2023).";
 /// Shortcut's explanation.
 pub const KEYS_RAIL: &str = "go to a step of the rail";
 /// Shortcut's explanation.
 pub const KEYS_LIST: &str = "previous or next station, or finding in Diagnosis";
 /// Shortcut's explanation.
-pub const KEYS_STEPS: &str = "previous or next step of the sweep, in Arcs";
+pub const KEYS_STEPS: &str = "previous or next profile of the station, in Arcs";
 /// The key.
 pub const TAB: &str = "Tab";
 /// Shortcut's explanation.

@@ -6,7 +6,7 @@ use crate::session::Target;
 /// Heading of the start page.
 pub const TITLE: &str = "Calibrate a laser profiler on a robot";
 /// What this is about, in a sentence.
-pub const LEAD: &str = "A ball, a handful of robot poses and the profiles seen from them give the sensor's place on the flange. Open a session of yours, or learn with a sample.";
+pub const LEAD: &str = "A ball, a right-angled plate or a pin's tip, a handful of robot poses and the profiles seen from them give the sensor's place on the flange. Open a session of yours, or learn with a sample.";
 /// Heading.
 pub const SAMPLES: &str = "Samples";
 /// Heading.

@@ -21,6 +21,8 @@ const HEAD_HEIGHT: f32 = 34.0;
 const EDGE_HEIGHT: f32 = 3.0;
 /// Parts of a row: station, x y z, Δx Δy Δz, |e|.
 const PARTS: [f32; 8] = [46.0, 73.0, 73.0, 73.0, 54.0, 54.0, 54.0, 51.0];
+/// The same where the edge stands behind the station.
+const PARTS_OF_PLATE: [f32; 8] = [62.0, 69.0, 69.0, 69.0, 53.0, 53.0, 53.0, 50.0];
 
 /// How the tables are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -119,9 +121,10 @@ fn refused(ui: &mut Ui, reason: &str) {
 }
 
 /// Widths of the columns, so that they fill the card.
-fn widths(ui: &Ui) -> [f32; 8] {
-    let scale = ui.available_width() / PARTS.iter().sum::<f32>();
-    PARTS.map(|part| part * scale)
+fn widths(ui: &Ui, is_of_plate: bool) -> [f32; 8] {
+    let parts = if is_of_plate { PARTS_OF_PLATE } else { PARTS };
+    let scale = ui.available_width() / parts.iter().sum::<f32>();
+    parts.map(|part| part * scale)
 }
 
 fn plain(
@@ -132,7 +135,7 @@ fn plain(
     selection: &mut Selection,
     commands: &mut Vec<Command>,
 ) {
-    let widths = widths(ui);
+    let widths = widths(ui, table.is_of_plate);
     let mut row = RowCells::new(ui, theme::ROW_HEIGHT);
     row.head(widths[0], text::STATION, Align2::LEFT_CENTER);
     row.head(widths[1..4].iter().sum(), text::in_base(method), Align2::CENTER_CENTER);

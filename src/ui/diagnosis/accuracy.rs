@@ -72,7 +72,7 @@ fn figures(ui: &mut Ui, view: &View<'_>, solution: &Solution, uncertainty: &Unce
     });
     let (weakest, weakest_mm) = uncertainty.weakest_direction();
     let weakest = fault_words::along(weakest, solution.mount);
-    value_row(ui, &words::weakest(&weakest), format!("± {} mm", std_text(weakest_mm)));
+    value_row(ui, &words::weakest(&weakest), format!("± {} mm", std_text(weakest_mm))).on_hover_text(&weakest);
     if Method::BALL.contains(&solution.method) {
         let moved_mm = solution.workspace_point_by_radius.norm() * RADIUS_STEP_MM;
         value_row(ui, &words::by_radius(&RADIUS_STEP_MM.to_string()), format!("{} mm", std_text(moved_mm)))

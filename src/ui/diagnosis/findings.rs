@@ -7,6 +7,7 @@ use egui::{
 
 use crate::app::{Command, Progress};
 use crate::diagnose::{Finding, Severity};
+use crate::session::Target;
 use crate::text::diagnosis as fault_words;
 use crate::text::diagnosis_panel as words;
 use crate::text::shell as shell_words;
@@ -40,7 +41,7 @@ pub fn show(ui: &mut Ui, height: f32, view: &View<'_>, context: &mut PanelContex
     };
     widgets::card_with_height(ui, words::FINDINGS, height, right, |ui| {
         match (view.diagnosis.value, view.diagnosis.progress) {
-            (Some(diagnosis), _) if diagnosis.findings.is_empty() => nothing_found(ui),
+            (Some(diagnosis), _) if diagnosis.findings.is_empty() => nothing_found(ui, &view.session.target),
             (Some(_), _) => list(ui, view, context, state),
             (None, Some(progress)) => examining(ui, progress, context),
             (None, None) => not_examined(ui, context),
@@ -58,7 +59,7 @@ fn padded<R>(ui: &mut Ui, contents: impl FnOnce(&mut Ui) -> R) -> R {
     Frame::new().inner_margin(Margin::symmetric(16, 12)).show(ui, contents).inner
 }
 
-fn nothing_found(ui: &mut Ui) {
+fn nothing_found(ui: &mut Ui, target: &Target) {
     padded(ui, |ui| {
         ui.horizontal(|ui| {
             ui.label(theme::heading("✔").color(theme::palette(ui).good));
@@ -66,10 +67,10 @@ fn nothing_found(ui: &mut Ui) {
         });
         ui.add_space(8.0);
         ui.label(theme::dim(ui, words::CHECKED_TITLE));
-        for line in words::CHECKED {
+        for line in words::checked(target) {
             ui.horizontal_top(|ui| {
                 ui.label(theme::dim(ui, "✔"));
-                ui.add(Label::new(line).wrap());
+                ui.add(Label::new(*line).wrap());
             });
         }
     });

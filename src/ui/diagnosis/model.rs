@@ -2,12 +2,13 @@
 
 use crate::app::{Progress, Study, Workbench};
 use crate::calibrate::validation::Bootstrap;
-use crate::calibrate::{MethodResult, Solution, StationSolution, best_available};
+use crate::calibrate::{MethodResult, PlateFound, Solution, StationSolution, best_available};
 use crate::diagnose::{Diagnosis, Fault, Finding, Plot, ReadingFit, Remedy, StationBar};
 use crate::geometry::PoseConvention;
 use crate::plan::{Limits, Plan, PlanRefusal, PlannedStation};
 use crate::session::Session;
 use crate::text::diagnosis_panel as words;
+use crate::text::edges::edge_name;
 use crate::ui::figures::std_text;
 use crate::ui::widgets::fixed;
 
@@ -130,8 +131,30 @@ pub fn stations(solution: &Solution, fault: Option<&Fault>) -> Option<Plot> {
             is_accused: accused.contains(&station.station_idx),
         })
     };
-    let bars: Vec<StationBar> = solution.stations.iter().filter_map(bar).collect();
+    let bars: Vec<StationBar> = match &solution.plate {
+        Some(plate) => of_points(plate, fault),
+        None => solution.stations.iter().filter_map(bar).collect(),
+    };
     (!bars.is_empty()).then_some(Plot::Stations(bars))
+}
+
+/// A plate's: how far each station's points are off the edge that was found without it, the furthest of them.
+fn of_points(plate: &PlateFound, fault: Option<&Fault>) -> Vec<StationBar> {
+    let mut bars: Vec<StationBar> = Vec::new();
+    for point in &plate.points {
+        let Some(error_mm) = point.leave_one_out_mm else { continue };
+        match bars.last_mut().filter(|bar| bar.station_idx == point.station_idx) {
+            Some(bar) => bar.error_mm = bar.error_mm.max(error_mm),
+            None => bars.push(StationBar {
+                station_idx: point.station_idx,
+                label: point.label.clone(),
+                error_mm,
+                is_accused: matches!(fault, Some(Fault::TwinPoses { station_idxs, .. })
+                    if station_idxs.contains(&point.station_idx)),
+            }),
+        }
+    }
+    bars
 }
 
 /// The figure behind a finding.
@@ -161,15 +184,25 @@ pub fn plan_row(station: &PlannedStation, convention: &PoseConvention, decimals:
     [x, y, z, a, b, c, tilt, azimuth, spin, std]
 }
 
-/// The table as text for a spreadsheet: tab-separated, with its head, with plain minus signs.
+/// The edge of a plate that a station is at, as tables write it; nothing with other targets.
+#[must_use]
+pub fn edge_symbol(station: &PlannedStation) -> &'static str {
+    station.edge.map_or("", edge_name)
+}
+
+/// The table as text for a spreadsheet: tab-separated, with its head, with plain minus signs; a plate's with the edges.
 #[must_use]
 pub fn plan_text(plan: &Plan, convention: &PoseConvention) -> String {
     /// What controllers take.
     const DECIMALS: usize = 3;
-    let mut lines = vec![plan_heads(convention).join("\t")];
-    lines.extend(
-        plan.stations.iter().map(|station| plan_row(station, convention, DECIMALS).join("\t").replace('−', "-")),
-    );
+    let has_edges = plan.stations.iter().any(|station| station.edge.is_some());
+    let line = |edge: &str, cells: [String; 10]| {
+        let cells = cells.join("\t").replace('−', "-");
+        if has_edges { format!("{edge}\t{cells}") } else { cells }
+    };
+    let mut lines = vec![line(words::EDGE, plan_heads(convention))];
+    let row = |station: &PlannedStation| line(edge_symbol(station), plan_row(station, convention, DECIMALS));
+    lines.extend(plan.stations.iter().map(row));
     lines.join("\n")
 }
 

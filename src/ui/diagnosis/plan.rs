@@ -6,7 +6,6 @@ use egui_extras::Column;
 use crate::app::Command;
 use crate::diagnose::Diagnosis;
 use crate::plan::{Limits, Plan};
-use crate::session::Target;
 use crate::text::diagnosis_panel as words;
 use crate::ui::figures::std_text;
 use crate::ui::widgets::tables::{head, number_cell, number_head, table};
@@ -16,13 +15,14 @@ use super::model::{self, View};
 
 /// Least widths of the columns: position, angles, tilt, azimuth, spin, σ; they share what is left.
 const WIDTHS: [f32; 10] = [51.0, 51.0, 51.0, 49.0, 49.0, 49.0, 40.0, 50.0, 44.0, 48.0];
-/// Width of the column of numbers.
+/// Width of the column of numbers, and with a plate's edge behind.
 const NUMBER_WIDTH: f32 = 22.0;
+const EDGE_WIDTH: f32 = 38.0;
 /// Free room at the right end, points.
 const END_MARGIN: f32 = 6.0;
 /// Decimals of a planned pose: the robot need not be there more exactly.
 const DECIMALS: usize = 1;
-/// Most tilt that makes sense: beyond, the laser grazes the ball.
+/// Most tilt that makes sense: beyond, the laser grazes what it lights.
 const MAX_TILT_DEG: f64 = 80.0;
 
 /// Shows the card.
@@ -49,9 +49,6 @@ pub fn show(ui: &mut Ui, height: f32, view: &View<'_>, commands: &mut Vec<Comman
     };
     widgets::card_with_height(ui, words::NEXT_POSES, height, right, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        if !matches!(view.session.target, Target::Ball { .. }) {
-            return widgets::nothing(ui, words::PLANS_FOR_BALLS);
-        }
         limits(ui, view, commands);
         if !is_sensible {
             return widgets::nothing(ui, words::NO_PLAN_YET);
@@ -68,14 +65,16 @@ pub fn show(ui: &mut Ui, height: f32, view: &View<'_>, commands: &mut Vec<Comman
 fn poses(ui: &mut Ui, view: &View<'_>, plan: &Plan) {
     let convention = view.session.robot.notation.convention;
     ui.spacing_mut().item_spacing.x = 0.0;
-    let mut builder = table(ui, "next poses").column(Column::exact(NUMBER_WIDTH));
+    let has_edges = plan.stations.iter().any(|station| station.edge.is_some());
+    let first_width = if has_edges { EDGE_WIDTH } else { NUMBER_WIDTH };
+    let mut builder = table(ui, "next poses").column(Column::exact(first_width));
     for width in WIDTHS {
         builder = builder.column(widgets::tables::number_column(width));
     }
     builder = builder.column(Column::exact(END_MARGIN));
     builder
         .header(theme::ROW_HEIGHT, |mut row| {
-            head(&mut row, "");
+            head(&mut row, if has_edges { words::EDGE } else { "" });
             for name in model::plan_heads(convention) {
                 number_head(&mut row, &name);
             }
@@ -89,6 +88,10 @@ fn poses(ui: &mut Ui, view: &View<'_>, plan: &Plan) {
                 row.col(|ui| {
                     ui.add_space(8.0);
                     ui.label(theme::dim(ui, (idx + 1).to_string()));
+                    if has_edges {
+                        ui.add_space(6.0);
+                        ui.label(model::edge_symbol(station));
+                    }
                 });
                 for cell in model::plan_row(station, convention, DECIMALS) {
                     number_cell(&mut row, cell);
@@ -107,9 +110,10 @@ fn limits(ui: &mut Ui, view: &View<'_>, commands: &mut Vec<Command>) {
             ui.spacing_mut().item_spacing = vec2(6.0, 4.0);
             let degrees =
                 |value, most| DragValue::new(value).range(0.0..=most).speed(1.0).fixed_decimals(0).suffix("°");
-            named(ui, words::MAX_TILT, degrees(&mut limits.max_tilt_deg, MAX_TILT_DEG));
-            named(ui, words::MAX_SPIN, degrees(&mut limits.max_spin_deg, 180.0));
-            standoff(ui, view, &mut limits);
+            let hint = words::limits_hint(&view.session.target);
+            named(ui, words::MAX_TILT, &hint, degrees(&mut limits.max_tilt_deg, MAX_TILT_DEG));
+            named(ui, words::MAX_SPIN, &hint, degrees(&mut limits.max_spin_deg, 180.0));
+            standoff(ui, view, &hint, &mut limits);
         });
     });
     if limits != view.limits {
@@ -118,14 +122,14 @@ fn limits(ui: &mut Ui, view: &View<'_>, commands: &mut Vec<Command>) {
 }
 
 /// A field with its word before it, which is also its name.
-fn named(ui: &mut Ui, name: &str, field: DragValue<'_>) {
-    let label = ui.label(theme::dim(ui, name)).on_hover_text(words::LIMITS_HINT);
-    ui.add(field).labelled_by(label.id).on_hover_text(words::LIMITS_HINT);
+fn named(ui: &mut Ui, name: &str, hint: &str, field: DragValue<'_>) {
+    let label = ui.label(theme::dim(ui, name)).on_hover_text(hint);
+    ui.add(field).labelled_by(label.id).on_hover_text(hint);
 }
 
-fn standoff(ui: &mut Ui, view: &View<'_>, limits: &mut Limits) {
+fn standoff(ui: &mut Ui, view: &View<'_>, hint: &str, limits: &mut Limits) {
     let mut is_set = limits.standoff_mm.is_some();
-    let is_toggled = ui.checkbox(&mut is_set, words::STANDOFF).on_hover_text(words::LIMITS_HINT).changed();
+    let is_toggled = ui.checkbox(&mut is_set, words::STANDOFF).on_hover_text(hint).changed();
     if is_toggled {
         limits.standoff_mm = is_set.then(|| measured_standoff_mm(view));
     }
@@ -135,7 +139,7 @@ fn standoff(ui: &mut Ui, view: &View<'_>, limits: &mut Limits) {
     };
     let field = |ui: &mut Ui, value: &mut f64, name: &str| {
         let field = DragValue::new(value).range(0.0..=2000.0).speed(1.0).fixed_decimals(0).suffix(" mm");
-        let field = ui.add(field).on_hover_text(words::LIMITS_HINT);
+        let field = ui.add(field).on_hover_text(hint);
         field.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, name));
     };
     field(ui, low, words::STANDOFF_FROM);
@@ -147,8 +151,11 @@ fn standoff(ui: &mut Ui, view: &View<'_>, limits: &mut Limits) {
 /// As the stations had it: where the user's own limits begin.
 fn measured_standoff_mm(view: &View<'_>) -> [f64; 2] {
     let distances = || {
-        let stations = view.solution().map_or(&[][..], |solution| &solution.stations);
-        stations.iter().map(|station| station.target_in_sensor_mm.z)
+        let of_stations = view.solution().into_iter().flat_map(|solution| &solution.stations);
+        let of_points = view.solution().and_then(|solution| solution.plate.as_ref()).into_iter();
+        of_stations
+            .map(|station| station.target_in_sensor_mm.z)
+            .chain(of_points.flat_map(|plate| &plate.points).map(|point| point.point_in_sensor_mm.z))
     };
     let (low, high) = (distances().fold(f64::INFINITY, f64::min), distances().fold(f64::NEG_INFINITY, f64::max));
     if low <= high { [low.floor(), high.ceil()] } else { [50.0, 100.0] }

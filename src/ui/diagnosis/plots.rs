@@ -27,7 +27,9 @@ pub fn evidence(ui: &mut Ui, height: f32, view: &View<'_>, context: &mut PanelCo
         Shown::Finding(idx) => view.findings().get(idx),
     };
     let evidence = found.and_then(|finding| finding.evidence.plot.as_ref());
-    let title = evidence.map_or(words::STATIONS_AGREE, fault_words::plot_title);
+    let target = &view.session.target;
+    let title =
+        evidence.map_or_else(|| words::stations_agree(target).to_owned(), |plot| fault_words::plot_title(plot, target));
     // Where there is nothing of its own to show, how far each station is off the others puts the finding in scale.
     let of_all = || view.solution().and_then(|solution| model::stations(solution, found.map(|finding| &finding.fault)));
     let plot = evidence.cloned().or_else(of_all);
@@ -36,7 +38,7 @@ pub fn evidence(ui: &mut Ui, height: f32, view: &View<'_>, context: &mut PanelCo
             ui.label(theme::dim(ui, words::READINGS_HINT));
         }
     };
-    widgets::card_with_height(ui, title, height, right, |ui| {
+    widgets::card_with_height(ui, &title, height, right, |ui| {
         if let Some(plot) = &plot {
             show(ui, plot, view, context, is_fitted);
         } else {

@@ -34,7 +34,9 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
         match (outcome, results.and_then(|results| results.refusal.as_deref())) {
             (Some(Ok(solution)), _) => solution_section(ui, document, solution),
             (Some(Err(error)), _) => refusal(ui, &error.to_string()),
-            (None, Some(reason)) => refusal(ui, reason),
+            (None, Some(reason)) => {
+                ui.add(egui::Label::new(theme::dim(ui, reason)).wrap());
+            }
             (None, None) => {
                 ui.label(theme::dim(ui, words::NO_RESULTS));
             }
@@ -167,12 +169,16 @@ fn station_rows(ui: &mut Ui, method: Method, solved: &StationSolution) {
 fn method_header(ui: &mut Ui, context: &mut PanelContext<'_>, document: &Document) {
     ui.horizontal(|ui| {
         ui.label(theme::strong(words::transform_name(document.session.mount)));
+        let methods = shown_methods(context);
+        if methods.is_empty() {
+            return;
+        }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let current = context.selection.method;
             let combo = ComboBox::from_id_salt("method shown")
                 .selected_text(method_text(ui, current))
                 .show_ui(ui, |ui| {
-                    for method in shown_methods(context) {
+                    for method in methods {
                         let text = method_text(ui, method);
                         ui.selectable_value(&mut context.selection.method, method, text);
                     }

@@ -68,7 +68,8 @@ impl Checks {
             }
             add(label, Note { word: words::finding_word(&finding), sentence, capture_idx });
         }
-        let Some(results) = results else { return };
+        // Where nothing is computed, nothing is looked for in the profiles either.
+        let Some(results) = results.filter(|results| results.refusal.is_none()) else { return };
         for (station_idx, station) in stations.iter().enumerate() {
             for capture_idx in 0..station.captures.len() {
                 let reading = results.measured.reading(station_idx, capture_idx);
@@ -76,7 +77,7 @@ impl Checks {
                 // That there are no points is said already.
                 if !without_points.contains(&(station.label.clone(), capture_idx)) {
                     let sentence = words::refused(capture_idx + 1, &reason.to_string());
-                    let word = words::NO_ARC.to_owned();
+                    let word = words::not_found(&document.session.target).to_owned();
                     add(&station.label, Note { word, sentence, capture_idx: Some(capture_idx) });
                 }
             }

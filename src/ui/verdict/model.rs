@@ -16,7 +16,7 @@ const WORTH_NAMING: f64 = 0.03;
 pub struct WorkspacePoint {
     /// Where it is along the range axis, mm.
     pub z_mm: f64,
-    /// Whether the session states that distance; otherwise the point is amid the balls seen.
+    /// Whether the session states that distance; otherwise the point is amid what was seen.
     pub is_stated: bool,
     /// Its standard deviation, mm.
     pub std_mm: f64,
@@ -65,6 +65,7 @@ impl NextStep {
         let (before_mm, after_mm) = plan.workspace_point_std_mm.zip(station.workspace_point_std_mm)?;
         (after_mm < before_mm * (1.0 - WORTH_NAMING)).then(|| Self::Measure {
             gain: text::diagnosis_panel::gain(
+                station.edge,
                 &widgets::fixed(station.tilt_deg, 0),
                 &std_text(before_mm),
                 &std_text(after_mm),

@@ -301,7 +301,10 @@ pub fn fault_remedy(fault: &Fault, session: &Session) -> String {
         Fault::MixedOrder { .. } => "Give each profile the pose that fits it, and check the order of the recording.",
         Fault::TooFewCleanStations { .. } => "Check the poses one by one, and measure more stations.",
         Fault::NoiseAboveStated { .. } => {
-            "Check the stated noise. Look for play (bracket, ball, joints) and biased flanks. With few stations one pose may be wrong: measure two more."
+            return format!(
+                "Check the stated noise. Look for play (bracket, {}, joints) and biased flanks. With few stations one pose may be wrong: measure two more.",
+                target_word(&session.target)
+            );
         }
         Fault::HalvesDisagree { .. } => {
             "Add stations with other orientations, and find out what changed during the recording."

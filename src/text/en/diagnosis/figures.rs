@@ -1,24 +1,32 @@
 //! Plots of the evidence, and lines of figures.
 
 use crate::calibrate::validation::{Bootstrap, Influence, Normality, SplitHalf};
-use crate::calibrate::{EstimatedRadius, Mount, NoiseModel, Solution, Uncertainty};
+use crate::calibrate::{Edge, EstimatedRadius, Mount, NoiseModel, Solution, Uncertainty};
 use crate::diagnose::{CurveAxis, Plot};
+use crate::session::Target;
 use crate::text::digits::{decimals_for, fixed};
+use crate::text::edges::edge_name;
 
-use super::words::{along, chance, size, with_std};
+use super::words::{along, chance, size, target_word, with_std};
 
 /// Heading of a plot of the evidence.
 #[must_use]
-pub const fn plot_title(plot: &Plot) -> &'static str {
-    match plot {
-        Plot::Stations(_) => "How far each station's ball is from where the others have it",
+pub fn plot_title(plot: &Plot, target: &Target) -> String {
+    let fixed_words = match plot {
+        Plot::Stations(_) if *target == Target::RightAnglePlate => {
+            "How far each station's point is off its edge as the others have it"
+        }
+        Plot::Stations(_) => {
+            return format!("How far each station's {} is from where the others have it", target_word(target));
+        }
         Plot::Readings(_) => "Residual of each way to read the poses",
         Plot::Curve { axis: CurveAxis::RadiusMm, .. } => "Residual over the ball's radius",
         Plot::Curve { axis: CurveAxis::ProfileScale, .. } => "Residual over the scale of the profiles",
-        Plot::Trend { .. } => "Shift of the ball in the order of recording",
+        Plot::Trend { .. } => return format!("Shift of the {} in the order of recording", target_word(target)),
         Plot::Direction { .. } => "Rotation about the three axes of the flange",
         Plot::Steps(_) => "Travel by the poses over commanded travel",
-    }
+    };
+    fixed_words.to_owned()
 }
 
 /// Titles of a plot's axes: across, upwards.
@@ -140,12 +148,19 @@ pub fn radius_line(solution: &Solution) -> String {
 
 /// The station that would help most; position (mm) and angles (degrees) as the robot names them.
 #[must_use]
-pub fn next_pose_line(position: &str, angles: &str, before_mm: Option<f64>, after_mm: Option<f64>) -> String {
+pub fn next_pose_line(
+    edge: Option<Edge>,
+    position: &str,
+    angles: &str,
+    before_mm: Option<f64>,
+    after_mm: Option<f64>,
+) -> String {
+    let at = edge.map_or_else(String::new, |edge| format!("edge {} at ", edge_name(edge)));
     let brings = before_mm.zip(after_mm).map_or_else(String::new, |(before_mm, after_mm)| {
         let decimals = decimals_for(Some(after_mm)).min(4);
         format!(": ± {} → {} mm at the workspace point", fixed(before_mm, decimals), fixed(after_mm, decimals))
     });
-    format!("next pose: {position}, {angles}{brings}")
+    format!("next pose: {at}{position}, {angles}{brings}")
 }
 
 /// Heading of what to do first.

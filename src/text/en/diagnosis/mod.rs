@@ -13,6 +13,7 @@ pub use figures::*;
 pub use readings::{pose_reading, pose_reading_in_full};
 pub use remedies::{remedy_label, remedy_undo_label};
 pub use words::along;
+pub(super) use words::target_word;
 
 use crate::diagnose::Severity;
 

@@ -118,7 +118,7 @@ pub(super) fn capitalised(words: &str) -> String {
 }
 
 /// The target, as a word.
-pub(super) const fn target_word(target: &Target) -> &'static str {
+pub(in super::super) const fn target_word(target: &Target) -> &'static str {
     match target {
         Target::Ball { .. } => "ball",
         Target::RightAnglePlate => "plate",
