@@ -3,8 +3,6 @@
 
 mod plate_cell;
 
-use std::sync::Arc;
-
 use handeye::calibrate::plate::{nine_elements, solve};
 use handeye::calibrate::validation::validate;
 use handeye::calibrate::verdict::judge;
@@ -12,13 +10,11 @@ use handeye::calibrate::{
     Edge, Method, Mount, PlateProblem, Problem, Reading, Solution, SolveError, Verdict, Warning, solve_joint,
 };
 use handeye::diagnose::{Fault, Remedy, Severity, diagnose_any};
-use handeye::fit::{EdgeFit, Feature};
 use handeye::geometry::so3::exp;
 use handeye::geometry::{Rigid, Transform, Vec3, stats};
 use handeye::scene::Random;
 use handeye::session::{self, Session, Target};
 use handeye::watch::Unwatched;
-use nalgebra::Matrix2;
 use plate_cell::{Cell, bound_mm2, error, simulated, simulated_tip, simulated_tip_with, simulated_with};
 
 /// What double precision leaves of 600 mm after a solve.
@@ -151,67 +147,6 @@ fn errors_are_as_large_as_sigma_says() {
             assert!((least..1.1).contains(&ratio), "{method:?}, {cell:?}: {ratio}");
         }
     }
-}
-
-/// A station's point as an edge fit would give it, with what is missing behind the edge.
-fn edge_reading(point: Vec3, std_mm: f64, gap_mm: [f64; 2]) -> Reading {
-    Reading::Edge(Arc::new(EdgeFit {
-        feature: Feature::Step,
-        point_mm: [point.x, point.z],
-        covariance: Matrix2::identity() * std_mm.powi(2),
-        gap_mm,
-        flanks: Vec::new(),
-        point_std_mm: std_mm,
-        classes: Vec::new(),
-    }))
-}
-
-/// A hole in one profile that hides the edge leaves it anywhere in the hole; where all profiles have such a gap it is the
-/// shadow behind the edge.
-#[test]
-fn a_hole_over_an_edge_is_told_from_a_shadow() {
-    const GAP_MM: f64 = 2.0;
-    let cell = Cell { line_to_edge_deg: 45.0, ..noisy() };
-    let (mut with_hole, mut taken_for_end, mut in_shadow, mut clean) = ([0.0; 2], 0.0, 0.0_f64, 0.0_f64);
-    for seed in 1..=60 {
-        let simulated = simulated(&cell, seed);
-        let solved = |reading_of: &dyn Fn(usize, Vec3) -> Reading| {
-            let mut problem = simulated.problem.clone();
-            for (idx, station) in problem.stations.iter_mut().enumerate() {
-                let reading = &mut station.station.captures[0].reading;
-                *reading = reading_of(idx, reading.point_in_sensor_mm().expect("a point"));
-            }
-            let solution = solve(&problem, Method::PlateBundle).expect("a solution");
-            let known = solution.uncertainty.as_ref().expect("something is left over").workspace_point_std_mm;
-            (point_error_mm(&solution, &simulated.flange_from_sensor).powi(2), known.powi(2))
-        };
-        let behind = |part: f64| [GAP_MM * part, 0.0];
-        let edge_in_hole = f64::from(u32::try_from(seed % 10).expect("small")) / 10.0 + 0.05;
-        let shift = Vec3::x() * (GAP_MM * edge_in_hole);
-        let is_hidden = |idx: usize| idx == 4;
-        let of_hole = |idx, point: Vec3| {
-            if is_hidden(idx) {
-                edge_reading(point - shift, 0.03, behind(1.0))
-            } else {
-                edge_reading(point, 0.03, [0.0; 2])
-            }
-        };
-        let (error, variance) = solved(&of_hole);
-        with_hole = [with_hole[0] + error, with_hole[1] + variance];
-        taken_for_end += solved(&|idx, point| {
-            let shift = if is_hidden(idx) { shift } else { Vec3::zeros() };
-            edge_reading(point - shift, 0.03, [0.0; 2])
-        })
-        .0;
-        in_shadow += solved(&|idx, point| edge_reading(point, 0.03, behind(if idx % 2 == 0 { 1.0 } else { 0.7 }))).0;
-        clean += solved(&|_, point| edge_reading(point, 0.03, [0.0; 2])).0;
-    }
-    assert_eq!(in_shadow.to_bits(), clean.to_bits(), "a shadow moved points: {in_shadow} against {clean}");
-    // One of eighteen points is lost, no more.
-    assert!(with_hole[0] < 1.5 * clean, "{with_hole:?} against {clean}");
-    assert!(taken_for_end > 2.0 * with_hole[0], "{taken_for_end} against {with_hole:?}");
-    let honest = (with_hole[0] / with_hole[1]).sqrt();
-    assert!((0.75..1.2).contains(&honest), "error over σ: {honest}");
 }
 
 #[test]

@@ -52,7 +52,8 @@ pub struct CellSettings {
     pub mounting: Option<RoughMounting>,
     /// What a run measures at each station.
     pub routine: StationRoutine,
-    /// The edge of a plate that the line is on.
+    /// The edge of a plate that the line is on; of this robot where it stands now, so not remembered.
+    #[serde(skip)]
     pub edge: Edge,
     /// Whether a run asks before each station's motion.
     pub asks_before_motion: bool,

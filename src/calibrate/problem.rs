@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use serde::{Deserialize, Serialize};
-
 use crate::fit::{ArcFit, EdgeFit, Found, Refusal};
 use crate::geometry::{Base, Flange, Sensor, Transform, Vec3};
 use crate::watch::{Cancelled, Watch};
@@ -69,8 +67,7 @@ pub enum SideChoice {
 }
 
 /// Which edge of the right-angle plate a station saw.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Edge {
     /// The edge p.
     #[default]

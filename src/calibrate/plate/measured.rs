@@ -1,6 +1,6 @@
 //! The points that a plate's stations hold.
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::Matrix2;
 
 use crate::calibrate::rotation_start::PoseGeometry;
 use crate::calibrate::{Capture, Edge, PlateProblem, PlateStation, Reading, SolveError};
@@ -24,8 +24,6 @@ pub(super) struct Measured<'a> {
     pub covariance_mm2: Option<Matrix2<f64>>,
     /// How many readings it is the mean of; copies are one.
     pub num_readings: f64,
-    /// What is missing between it and the surface behind its edge, as its profile shows it, (x, z), mm.
-    pub gap_mm: Vector2<f64>,
     /// How many points were taken at its pose.
     pub num_at_pose: f64,
 }
@@ -66,7 +64,6 @@ pub(super) fn measured(problem: &PlateProblem) -> Result<(Vec<Measured<'_>>, Pos
         });
         return Err(SolveError::TooFewEdgePoints { found_p, found_q, needed: MIN_POINTS, refusal });
     }
-    place_in_holes(&mut points);
     let poses: Vec<Rigid> = points.iter().map(|measured| measured.point.base_from_flange).collect();
     for measured in &mut points {
         let same = poses.iter().filter(|pose| **pose == measured.point.base_from_flange).count();
@@ -96,8 +93,9 @@ impl<'a> Read<'a> {
         Some(Self { capture_idx, base_from_flange: *capture.base_from_flange.rigid(), point, edge })
     }
 
-    fn gap_mm(&self) -> Vector2<f64> {
-        self.edge.map_or_else(Vector2::zeros, |edge| edge.gap_mm.into())
+    /// How much is missing between the point and the surface behind its edge, mm.
+    fn gap_mm(&self) -> f64 {
+        self.edge.map_or(0.0, |edge| edge.gap_mm[0].hypot(edge.gap_mm[1]))
     }
 }
 
@@ -105,9 +103,9 @@ impl<'a> Read<'a> {
 /// the mean; the pitch of the points, which blurs where a surface ends, is common to all as well.
 fn merged<'a>(station: &'a PlateStation, station_idx: usize, here: &[&Read<'a>]) -> Measured<'a> {
     // A hole over the edge need not be in all profiles.
-    let least_gap_mm = here.iter().map(|read| read.gap_mm().norm()).fold(f64::INFINITY, f64::min);
+    let least_gap_mm = here.iter().map(|read| read.gap_mm()).fold(f64::INFINITY, f64::min);
     let mut distinct: Vec<&Read> = Vec::new();
-    for read in here.iter().filter(|read| read.gap_mm().norm() <= 2.0 * least_gap_mm) {
+    for read in here.iter().filter(|read| read.gap_mm() <= 2.0 * least_gap_mm) {
         if !distinct.iter().any(|other| other.point == read.point) {
             distinct.push(read);
         }
@@ -133,7 +131,6 @@ fn merged<'a>(station: &'a PlateStation, station_idx: usize, here: &[&Read<'a>])
         },
         covariance_mm2: covariances.map(|all| all.iter().sum::<Matrix2<f64>>() / num_readings),
         num_readings,
-        gap_mm: used.iter().map(|read| read.gap_mm()).sum::<Vector2<f64>>() / num_readings,
         num_at_pose: 1.0,
     }
 }
@@ -144,24 +141,4 @@ fn is_copy(one: &Measured<'_>, other: &Measured<'_>) -> bool {
     one.edge == other.edge
         && one.base_from_flange == other.base_from_flange
         && one.point_in_sensor == other.point_in_sensor
-}
-
-/// Where the points of an edge are missing up to the surface behind it, that surface is in the edge's shadow, and the edge is
-/// where its own points end. But a shadow falls at most stations; where hardly another shows one, a hole in the
-/// measurement hides the edge, which may be anywhere in it.
-fn place_in_holes(points: &mut [Measured<'_>]) {
-    /// One in so many of the other points of the edge with a gap of at least half the size make it a shadow.
-    const SHADOW_ONE_IN: usize = 3;
-    let gaps: Vec<(Edge, f64)> = points.iter().map(|measured| (measured.point.edge, measured.gap_mm.norm())).collect();
-    for (idx, measured) in points.iter_mut().enumerate() {
-        let (edge, size_mm) = gaps[idx];
-        let others = || gaps.iter().enumerate().filter(|(other, gap)| *other != idx && gap.0 == edge);
-        let alike = others().filter(|(_, gap)| gap.1 >= size_mm / 2.0).count();
-        let Some(covariance) = measured.covariance_mm2.as_mut().filter(|_| size_mm > 0.0) else { continue };
-        if SHADOW_ONE_IN * alike < others().count() {
-            let gap = measured.gap_mm;
-            measured.point.point_in_sensor += Vec3::new(gap.x, 0.0, gap.y) / 2.0;
-            *covariance += gap * gap.transpose() / 12.0;
-        }
-    }
 }
