@@ -12,6 +12,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use handeye::app::{Command, Document, RecoverySettings, Workbench};
 use handeye::calibrate::Mount;
+use handeye::geometry::Vec3;
 use handeye::session::{self, Edit, Session, SetupField, Target, samples};
 use handeye::text::{document as words, shell as shell_words, start as start_words};
 use handeye::ui::{Start, Step, Window};
@@ -164,6 +165,38 @@ fn a_number_is_taken_over_when_its_field_is_left_and_a_wrong_one_says_why() {
     harness.key_press(Key::Escape);
     settle(&mut harness);
     assert_eq!(radius_mm(&harness).to_bits(), before.to_bits(), "Escape gives it up");
+}
+
+#[test]
+fn what_is_known_of_targets_is_shown_typed_and_undone() {
+    let open = |name: &str| {
+        let mut harness = window_with(Start::default());
+        let sample = samples::ALL.iter().position(|sample| sample.file_name == name).expect("a sample");
+        request(&mut harness, Command::OpenSample(sample));
+        harness.state_mut().shell_mut().go_to(Step::Session);
+        settle(&mut harness);
+        harness
+    };
+    for (name, shown) in [
+        ("three-targets.json", "right-angle plate · 18 of 18 stations used"),
+        ("workpiece.json", "workpiece · 2 of 2 stations used · pitch 15 mm · height 10 mm"),
+    ] {
+        open(name).get_by_label(shown);
+    }
+    let mut harness = open("tip.json");
+    let before = document(&harness).session.clone();
+    retype(&mut harness, &start_words::field_name(start_words::TOUCHED_POINT, "mm"), "1 2,5; -3");
+    harness.key_press(Key::Enter);
+    settle(&mut harness);
+    let touched_mm = document(&harness).session.known.point_in_base_mm;
+    assert_eq!(touched_mm, Some(Vec3::new(1.0, 2.5, -3.0)));
+    retype(&mut harness, &start_words::field_name(start_words::ROUGH_MOUNTING, "mm °"), "10 0 120 0 0 90");
+    harness.key_press(Key::Enter);
+    settle(&mut harness);
+    assert!(document(&harness).session.sensor.rough_flange_from_sensor.is_some());
+    request(&mut harness, Command::Undo);
+    request(&mut harness, Command::Undo);
+    assert_eq!(document(&harness).session, before);
 }
 
 #[test]

@@ -362,9 +362,9 @@ fn a_gap_behind_a_step_is_measured() {
         assert!(found.gap_mm[1].abs() < 0.02, "{:?}", found.gap_mm);
     }
     let closed = extract(|x| on_plate(x, -100.0, 3.0, Some(5.0)), None).expect("a step");
-    assert_eq!(closed.gap_mm, [0.0; 2]);
+    assert!(closed.gap_mm.iter().all(|gap| *gap == 0.0), "{:?}", closed.gap_mm);
     let free = extract(|x| on_plate(x, -100.0, 3.0, None), None).expect("an edge");
-    assert_eq!(free.gap_mm, [0.0; 2]);
+    assert!(free.gap_mm.iter().all(|gap| *gap == 0.0), "{:?}", free.gap_mm);
 }
 
 #[test]

@@ -52,7 +52,7 @@ const BROKEN_TARGETS: &[(&str, &str, &[&str])] = &[
     ("\"edge\": \"q\"", "\"edge\": \"q \"", &["further[0].stations[1].edge: found \"q \", expected \"p\" or \"q\""]),
     ("\"euler_deg\": [0, 90, 0], \"convention\": \"kuka-abc\"", "\"quaternion_wxyz\": [0.5, 0.1, 0, 0]", &["sensor.rough_flange_from_sensor.quaternion_wxyz: found a quaternion of norm 0.509902, expected norm 1"]),
     ("\"pitch_mm\": 15", "\"pitch_mm\": NaN", &["line 18, column", "found NaN, expected a finite number"]),
-    ("\"height_mm\": 10", "\"height_mm\": 1e9", &["further[1].target.height_mm: found 1000000000, expected a part's size in mm"]),
+    ("\"height_mm\": 10", "\"height_mm\": 1e9", &["further[1].target.height_mm: found 1000000000", "expected a part's size in mm"]),
     ("\"diameter_mm\": 40", "\"diameter_mm\": \"40\"", &["further[1].target.diameter_mm: found \"40\""]),
     ("\"stations\": [], \"their 4\"", "\"their 4\"", &["further[1].stations: found nothing, expected a list of stations"]),
     ("\"label\": \"q1\"", "\"label\": \"p1\"", &["further[0].stations[1].label: found \"p1\", which further[0].stations[0] has too"]),

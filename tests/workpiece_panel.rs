@@ -97,7 +97,7 @@ fn a_part_shows_its_planes_and_their_angle_at_once() {
         assert!(harness.query_by_label(&equation).is_some(), "{equation}");
     }
     let [a, b] = [0, 1].map(|idx| scan.regions[idx].plane.as_ref().expect("a plane"));
-    let angle = words::angle(a, b, scan.known.angle_deg);
+    let angle = words::angle(a, b, scan.known.angle_deg).replace('-', "−");
     assert!(angle.contains("off 90°"), "{angle}");
     assert!(harness.query_by_label(&angle).is_some(), "{angle}");
 }

@@ -188,7 +188,7 @@ fn what_is_not_allowed_is_not_begun_and_says_why() {
         bench.cell(command);
         assert!(bench.last_notice().contains(reason), "{}", bench.last_notice());
     }
-    bench.workbench.apply(Command::NewSession(Target::Point));
+    bench.workbench.apply(Command::NewSession(Target::Workpiece));
     bench.cell(CellCommand::FindLargestArc);
     assert!(bench.last_notice().contains("no ball"), "{}", bench.last_notice());
     bench.workbench.apply(Command::NewSession(Target::ball(15.0)));

@@ -4,13 +4,16 @@ use std::fmt::Write as _;
 
 use crate::calibrate::{Method, Mount, PlateFound, Solution, StationSolution};
 use crate::geometry::Vec3;
-use crate::report::digits::{fixed, signed};
+use crate::report::digits::{decimals_for, fixed, signed};
 
 /// The table. Writing to a string does not fail, hence the `ok()`s.
 pub fn stations(out: &mut String, solution: &Solution) {
     let frame = target_frame(solution.mount);
     match &solution.plate {
-        Some(plate) => points(out, plate, frame),
+        Some(plate) => {
+            let std_mm = solution.uncertainty.as_ref().map(|known| known.workspace_point_std_mm);
+            points(out, plate, frame, decimals_for(std_mm));
+        }
         None if solution.method == Method::FixedPoint => tips(out, &solution.stations, frame),
         None => balls(out, &solution.stations, frame),
     }
@@ -61,15 +64,15 @@ fn places(station: &StationSolution) -> String {
     )
 }
 
-fn points(out: &mut String, plate: &PlateFound, frame: &str) {
+fn points(out: &mut String, plate: &PlateFound, frame: &str, decimals: usize) {
     let corner = plate.base_from_plate.translation.vector;
     let starts = plate.starts;
     writeln!(
         out,
         "  corner of the plate in {frame}: {}, {}, {} mm · {} of {} starts led here",
-        fixed(corner.x, 3),
-        fixed(corner.y, 3),
-        fixed(corner.z, 3),
+        fixed(corner.x, decimals),
+        fixed(corner.y, decimals),
+        fixed(corner.z, decimals),
         starts.num_agreed,
         starts.num_tried
     )

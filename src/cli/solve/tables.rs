@@ -32,7 +32,7 @@ pub fn tables(session: &Session, results: &[MethodResult], diagnosis: Option<&Di
         writeln!(out, "{}", text::answer_head(solution.method)).ok();
         verdict_and_calibration(&mut out, session, solution, diagnosis);
         if !session.further.is_empty() {
-            writeln!(out, "  {}", text::cli::further_line(&session.further)).ok();
+            writeln!(out, "  {}", text::cli::further_line(session)).ok();
         }
         out.push('\n');
     }

@@ -174,9 +174,8 @@ impl Runner {
                     }
                     self.tell(RoutineEvent::Settling);
                     let seen = self.capture(None)?;
-                    let travelled_mm = settings.travelled_mm(first.rigid(), seen.base_from_flange.rigid());
                     let found = extract_edge(&seen.profile, options).ok();
-                    search.take(commanded_mm, travelled_mm, found.and_then(|found| height_mm(&seen.profile, &found)));
+                    search.take(commanded_mm, found.and_then(|found| height_mm(&seen.profile, &found)));
                 }
             }
         }

@@ -67,8 +67,6 @@ pub enum TipEnd {
 #[derive(Clone, Copy, Debug)]
 struct Look {
     commanded_mm: f64,
-    /// By the reported poses.
-    travelled_mm: f64,
     /// How far it sticks out; `None` where nothing does.
     height_mm: Option<f64>,
 }
@@ -87,9 +85,9 @@ impl TipSearch {
         Self { settings: *settings, looks: Vec::new() }
     }
 
-    /// Takes what was seen at a place: how far something sticks out there, or nothing.
-    pub fn take(&mut self, commanded_mm: f64, travelled_mm: f64, height_mm: Option<f64>) {
-        self.looks.push(Look { commanded_mm, travelled_mm, height_mm });
+    /// Takes what was seen at a place that the robot was sent to: how far something sticks out there, or nothing.
+    pub fn take(&mut self, commanded_mm: f64, height_mm: Option<f64>) {
+        self.looks.push(Look { commanded_mm, height_mm });
     }
 
     /// What to do next.
@@ -116,11 +114,10 @@ impl TipSearch {
         if let Some(place_mm) = beyond.or(between) {
             return TipNext::LookAt(place_mm);
         }
-        let no_peak = TipNext::Over(TipEnd::NoPeak { at_mm: highest.travelled_mm });
+        let no_peak = TipNext::Over(TipEnd::NoPeak { at_mm: highest.commanded_mm });
         if wanted.iter().any(|wanted| !matches!(wanted, Wanted::Nothing)) {
             return no_peak;
         }
-        // What is commanded and what is travelled differ by the robot's noise only.
         self.meeting_mm(&highest).map_or(no_peak, TipNext::KeepAt)
     }
 
@@ -259,7 +256,7 @@ mod tests {
                     let slope = if off_mm < 0.0 { slopes[0] } else { slopes[1] };
                     let noise_mm = noise_mm * f64::from(i16::try_from(count * 7 % 5).expect("small") - 2) / 2.0;
                     let height_mm = (off_mm.abs() < reach_mm).then(|| 10.0 - slope * off_mm.abs() + noise_mm);
-                    search.take(place_mm, place_mm, height_mm);
+                    search.take(place_mm, height_mm);
                 }
                 over => return (over, search.looks.len()),
             }

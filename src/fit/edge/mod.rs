@@ -17,6 +17,9 @@ use pieces::Piece;
 use points::Points;
 use sighting::Seen;
 
+/// A tilted surface leaves the field of view on one side nearer to its middle than on the other, but not by this factor.
+const CLEARLY_INSIDE_PART: f64 = 0.8;
+
 /// What the surface does at the place looked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Feature {
@@ -120,16 +123,30 @@ pub fn extract_edge(profile: &Profile, options: &EdgeOptions) -> Result<EdgeFit,
     let of_plate: Vec<Seen> =
         seen.into_iter().filter(|seen| !seen.is_of(|piece| sighting::is_narrow(&points, &pieces[piece]))).collect();
     let mut wanted: Vec<Seen> = of_plate.iter().copied().filter(|seen| seen.answers(options.feature)).collect();
-    // Where a head's field of view is narrower than its profile, every surface ends like a free edge at its border.
-    let is_free_end = |seen: &Seen| seen.feature() == Feature::Edge;
-    if options.feature != Some(Feature::Edge) && wanted.iter().any(|seen| !is_free_end(seen)) {
-        wanted.retain(|seen| !is_free_end(seen));
-    }
+    leave_out_borders(profile, &mut wanted, options);
     match wanted.as_slice() {
         [found] => fit(&points, &pieces, found, options)
             .ok_or(EdgeRefusal::NoFeature { feature: options.feature, num_points: points.len() }),
         [] => nothing(&points, &pieces, &of_plate, flattest_rad, options),
         several => Err(EdgeRefusal::Ambiguous { seen: several.iter().map(Seen::sighting).collect() }),
+    }
+}
+
+/// Where a head's field of view is narrower than its profile, a surface ends at its border as at a free edge. Beside anything
+/// else, and beside an end that is clearly further inside, such an end tells nothing.
+fn leave_out_borders(profile: &Profile, wanted: &mut Vec<Seen>, options: &EdgeOptions) {
+    let is_free_end = |seen: &Seen| seen.feature() == Feature::Edge;
+    if options.feature != Some(Feature::Edge) && wanted.iter().any(|seen| !is_free_end(seen)) {
+        wanted.retain(|seen| !is_free_end(seen));
+        return;
+    }
+    let (Some(first), Some(last)) = (profile.x_mm().first(), profile.x_mm().last()) else { return };
+    let middle_mm = f64::midpoint(*first, *last);
+    let off_middle = |seen: &Seen| (seen.sighting().x_mm - middle_mm).abs();
+    let outermost = wanted.iter().map(off_middle).fold(0.0, f64::max);
+    let has_end_inside = wanted.iter().any(|seen| off_middle(seen) < CLEARLY_INSIDE_PART * outermost);
+    if wanted.len() == 2 && wanted.iter().all(is_free_end) && has_end_inside {
+        wanted.retain(|seen| off_middle(seen) < outermost);
     }
 }
 

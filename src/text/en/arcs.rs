@@ -116,8 +116,6 @@ pub const SPREAD_HINT_LONG: &str = "The calibration knows the sensor's plane fro
 /// In place of that card.
 pub const NO_POINTS: &str = "No profile has given a point yet; the list says why.";
 
-/// Head of the column of profiles.
-pub const PROFILES: &str = "prof.";
 /// Head of the column of points of a scan.
 pub const POINTS: &str = "points";
 /// What it says, on hover.

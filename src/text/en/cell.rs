@@ -223,7 +223,10 @@ pub const REASON_OF_BESIDE: &str =
 fn orientation(station: &PlannedStation) -> String {
     let turned =
         format!("tilted {:.0}° towards {:.0}°, spun {:.0}°", station.tilt_deg, station.azimuth_deg, station.spin_deg);
-    station.edge.map_or(turned.clone(), |edge| format!("edge {}, {turned}", edge_name(edge)))
+    match station.edge {
+        Some(edge) => format!("edge {}, {turned}", edge_name(edge)),
+        None => turned,
+    }
 }
 
 /// A profile that was to show the target does not.

@@ -2,7 +2,7 @@
 
 use crate::calibrate::{Edge, Method, Mount, Verdict, VerdictReason, Warning};
 use crate::diagnose::Reason;
-use crate::session::{FurtherTarget, Session, Target};
+use crate::session::{Session, Target};
 
 use crate::text::digits;
 
@@ -53,9 +53,10 @@ pub fn answer_head(method: Method) -> String {
 
 /// The session has more targets than the one that is solved here.
 #[must_use]
-pub fn further_line(further: &[FurtherTarget]) -> String {
+pub fn further_line(session: &Session) -> String {
     /// More are counted.
     const MAX_NAMES: usize = 5;
+    let further = &session.further;
     let mut names: Vec<String> = further.iter().take(MAX_NAMES).map(|further| further.name.clone()).collect();
     names.extend((further.len() > MAX_NAMES).then(|| format!("{} more", further.len() - MAX_NAMES)));
     format!(

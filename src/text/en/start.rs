@@ -102,7 +102,7 @@ pub const BALL_RADIUS: &str = "ball radius";
 /// Row.
 pub const BALL_RADIUS_STD: &str = "radius, 1σ";
 /// Row: where the tip is, touched with a calibrated tool.
-pub const TOUCHED_POINT: &str = "touched in the base, x y z";
+pub const TOUCHED_POINT: &str = "touched at";
 /// Hint in the empty field.
 pub const TOUCHED_POINT_HINT: &str = "not touched";
 /// Row: from a certificate.
@@ -117,8 +117,8 @@ pub const NOMINAL_DIAMETER: &str = "diameter";
 pub const ROUGH_MOUNTING: &str = "rough mounting";
 /// Hint in the empty field.
 pub const ROUGH_MOUNTING_HINT: &str = "not stated: x y z and three angles";
-/// Row: another target of the same sensor.
-pub const FURTHER: &str = "further target";
+/// Row above those of the other targets of the same sensor.
+pub const FURTHER: &str = "further targets";
 /// Leads to the page where further targets are changed.
 pub const CHANGE_FURTHER: &str = "in Verify";
 /// What it leads to.
@@ -138,7 +138,7 @@ pub fn numbers_missing(found: usize, needed: usize) -> String {
     format!("found {found} number{}, needed {needed} with blanks between them", super::plural(found))
 }
 
-/// A further target, and what is known of it.
+/// What a further target is, and what is known of it.
 #[must_use]
 pub fn further(further: &FurtherTarget) -> String {
     let used = further.stations.iter().filter(|station| station.enabled).count();
@@ -157,7 +157,7 @@ pub fn further(further: &FurtherTarget) -> String {
         size("diameter", diameter_mm, " mm"),
     ];
     let parts: Vec<String> = std::iter::once(figures).chain(known.into_iter().flatten()).collect();
-    format!("{}: {}", further.name, parts.join(" · "))
+    parts.join(" · ")
 }
 
 /// Hint in the empty field: nothing is stated.

@@ -19,7 +19,7 @@ pub enum Columns {
     EdgePoints,
     /// The same without edges, of a tip.
     Tips,
-    /// Profiles, points and depth, of a scan.
+    /// Points and depth, of a scan.
     Scans,
 }
 
@@ -44,6 +44,9 @@ const STATUS_CENTRE: f32 = 0.94;
 const EDGE_RIGHT: f32 = 0.33;
 const X_RIGHT: f32 = 0.58;
 const Z_RIGHT: f32 = 0.87;
+const NUMBER_RIGHT: f32 = 0.36;
+const POINTS_RIGHT: f32 = 0.60;
+const DEPTH_RIGHT: f32 = 0.87;
 
 /// Shows the list; `reveal` scrolls to the selected row.
 pub fn show(
@@ -121,9 +124,9 @@ fn head(ui: &mut Ui, columns: Columns) {
             (Z_RIGHT, text::POINT_Z, text::POINT_HINT),
         ],
         Columns::Scans => [
-            (STEPS_RIGHT, text::PROFILES, ""),
-            (RADIUS_RIGHT, text::POINTS, text::POINTS_HINT),
-            (RMS_RIGHT, text::DEPTH, text::DEPTH_HINT),
+            (NUMBER_RIGHT, "", ""),
+            (POINTS_RIGHT, text::POINTS, text::POINTS_HINT),
+            (DEPTH_RIGHT, text::DEPTH, text::DEPTH_HINT),
         ],
         Columns::Tips => {
             [(EDGE_RIGHT, "", ""), (X_RIGHT, text::POINT_X, text::TIP_HINT), (Z_RIGHT, text::POINT_Z, text::TIP_HINT)]
@@ -187,7 +190,7 @@ fn scan_cells(first: String, captures: &[CaptureRow]) -> [(f32, String); 3] {
     let lines = || captures.iter().filter_map(|capture| capture.scan);
     let num_points = (lines().count() > 0).then(|| lines().map(|line| line.num_valid).sum::<usize>());
     let points = num_points.map_or_else(|| figure(None, 0), |num| num.to_string());
-    [(STEPS_RIGHT, first), (RADIUS_RIGHT, points), (RMS_RIGHT, figure(depth_mm(captures), 1))]
+    [(NUMBER_RIGHT, first), (POINTS_RIGHT, points), (DEPTH_RIGHT, figure(depth_mm(captures), 1))]
 }
 
 /// From the nearest to the farthest point of some profiles.
@@ -242,7 +245,7 @@ fn station_line(
                     row.edge.map_or_else(String::new, |edge| edge_name(edge).to_owned()),
                     row.captures.iter().find_map(|capture| capture.point_mm),
                 ),
-                Columns::Scans => scan_cells(row.captures.len().to_string(), &row.captures),
+                Columns::Scans => scan_cells(String::new(), &row.captures),
             },
             problem: row.problem.as_deref(),
             is_enabled: row.is_enabled,
@@ -251,7 +254,8 @@ fn station_line(
     let palette = theme::palette(ui);
     let color = if row.is_enabled { palette.text } else { palette.text_dim };
     let label_right = match columns {
-        Columns::Arcs | Columns::Scans => STEPS_RIGHT - 0.12,
+        Columns::Arcs => STEPS_RIGHT - 0.12,
+        Columns::Scans => POINTS_RIGHT - 0.18,
         Columns::EdgePoints | Columns::Tips => EDGE_RIGHT - 0.08,
     };
     let clip = Rect::from_min_max(rect.min, pos2(rect.left() + label_right * rect.width(), rect.bottom()));

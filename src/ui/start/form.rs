@@ -118,7 +118,7 @@ impl FormState {
             ui.visuals_mut().selection.stroke = bad;
         }
         let width =
-            if field.has_several_numbers() { NUMBERS_WIDTH.min(ui.available_width() * 0.75) } else { NUMBER_WIDTH };
+            if field.has_several_numbers() { NUMBERS_WIDTH.min(ui.available_width() * 0.9) } else { NUMBER_WIDTH };
         let edit = TextEdit::singleline(&mut text)
             .id(id_of(field))
             .hint_text(number_text(field.hint()))

@@ -48,7 +48,7 @@ fn column(ui: &mut Ui, width: f32, title: &str, rows: impl FnOnce(&mut Ui)) {
         |_| {},
         |ui| {
             Frame::new().inner_margin(Margin::symmetric(12, 4)).show(ui, |ui| {
-                ui.set_min_height(9.0 * (theme::ROW_HEIGHT + 4.0));
+                ui.set_min_height(10.0 * (theme::ROW_HEIGHT + 4.0));
                 rows(ui);
             });
         },
@@ -85,14 +85,16 @@ fn target_and_data(ui: &mut Ui, document: &Document, context: &mut PanelContext<
     for (label, value) in data(document) {
         value_row(ui, label, value);
     }
-    for further in &document.session.further {
+    if !document.session.further.is_empty() {
         split_row(ui, words::FURTHER, |ui| {
             if ui.link(words::CHANGE_FURTHER).on_hover_text(words::CHANGE_FURTHER_HINT).clicked() {
                 context.actions.push(Action::GoTo(Step::Verify));
             }
-            let figures = words::further(further);
-            ui.add(Label::new(&figures).truncate()).on_hover_text(&figures);
         });
+    }
+    for further in &document.session.further {
+        let figures = words::further(further);
+        value_row(ui, &further.name, figures.as_str()).on_hover_text(figures);
     }
     let path = document.path.as_deref();
     split_row(ui, words::FILE, |ui| {

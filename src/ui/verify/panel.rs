@@ -14,6 +14,8 @@ use super::{cross_target, distances, stability, workpiece};
 const TABS_HEIGHT: f32 = 38.0;
 /// Room at either side of a tab's name, points.
 const TAB_MARGIN: f32 = 14.0;
+/// The same in a narrow window.
+const LEAST_TAB_MARGIN: f32 = 4.0;
 /// The accent below the tab in sight, points.
 const UNDERLINE: f32 = 2.5;
 
@@ -135,13 +137,18 @@ fn tabs(ui: &mut Ui, current: Section, workbench: &Workbench) -> Option<Section>
     ui.painter().hline(rect.x_range(), rect.bottom() - 0.5, Stroke::new(1.0, palette.hairline));
     let mut chosen = None;
     let mut left = rect.left();
+    let width_of =
+        |name: &str| ui.painter().layout_no_wrap(name.to_owned(), theme::strong_font(), palette.accent).size().x;
+    let names: f32 = Section::ALL.iter().map(|section| width_of(section.name())).sum();
+    #[expect(clippy::cast_precision_loss, reason = "a handful of tabs")]
+    let margin = ((rect.width() - names) / (2.0 * Section::ALL.len() as f32)).clamp(LEAST_TAB_MARGIN, TAB_MARGIN);
     for section in Section::ALL {
         let is_current = section == current;
         // As wide as in the heavier weight, so that nothing moves when another tab is chosen.
         let name = section.name().to_owned();
         let strong = ui.painter().layout_no_wrap(name.clone(), theme::strong_font(), palette.accent);
         let tab =
-            Rect::from_min_max(pos2(left, rect.top()), pos2(left + strong.size().x + 2.0 * TAB_MARGIN, rect.bottom()));
+            Rect::from_min_max(pos2(left, rect.top()), pos2(left + strong.size().x + 2.0 * margin, rect.bottom()));
         left = tab.right();
         let response = ui.interact(tab, ui.scope_id().with(section.name()), Sense::click());
         response.widget_info(|| WidgetInfo::selected(Role::Tab, true, is_current, section.name()));
@@ -152,7 +159,7 @@ fn tabs(ui: &mut Ui, current: Section, workbench: &Workbench) -> Option<Section>
         let middle = tab.center();
         if is_current {
             ui.painter().galley(middle - strong.size() / 2.0, strong, palette.accent);
-            let underline = tab.with_min_y(tab.bottom() - UNDERLINE).shrink2(vec2(TAB_MARGIN - 4.0, 0.0));
+            let underline = tab.with_min_y(tab.bottom() - UNDERLINE).shrink2(vec2(margin - LEAST_TAB_MARGIN, 0.0));
             ui.painter().rect_filled(underline, 1.0, palette.accent);
         } else {
             let font = FontId::proportional(theme::BODY_SIZE);

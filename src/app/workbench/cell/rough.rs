@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::calibrate::{Mount, Noise, Reading as MeasuredReading};
-use crate::device::LinkState;
+use crate::device::{LinkState, LiveProfile};
 use crate::fit::{ArcFit, Found, Sought};
 use crate::geometry::{Base, Flange, Profile, Rigid, Transform, Vec3};
 use crate::plan::{MeasuredStation, PlanRefusal, PlannedStation, RoughCell, RoughPlate, SeenEdge, View};
@@ -23,15 +23,15 @@ const HALF_RANGE_RADII: f64 = 0.4;
 
 /// How far from the middle of the line a plate's edge or a tip may be, and nearer or further than where it was seen, as a
 /// part of half the line: on either side a flank has to be seen.
-const EDGE_HALF_WIDTH_PART: f64 = 0.5;
-const EDGE_HALF_RANGE_PART: f64 = 0.4;
+const EDGE_HALF_WIDTH_PART: f64 = 0.35;
+const EDGE_HALF_RANGE_PART: f64 = 0.3;
 /// The second station of an edge is shifted by so much of half the line across it, either way: the crossing moves as far along
 /// the line, or less.
-const SHIFT_PARTS: [f64; 4] = [0.5, -0.5, 0.25, -0.25];
+const SHIFT_PARTS: [f64; 4] = [0.4, -0.4, 0.2, -0.2];
 /// The edges are taken to go on for so much of half the line beyond where they were crossed ...
 const BEYOND_PART: f64 = 0.7;
 /// ... but nearer to the corner than this part the line would meet the other edge.
-const CORNER_PART: f64 = 0.9;
+const CORNER_PART: f64 = 1.1;
 /// How far beside the laser plane a tip may be for the search to meet it, mm.
 const TIP_REACH_MM: f64 = 4.0;
 /// How well the pose is known at which the line lies on a tip, mm.
@@ -141,9 +141,10 @@ impl Workbench {
             }
         }
         if found.is_empty()
-            && let Some((base_from_flange, profile, Ok(Found::Arc(arc)))) = self.seen_now()
+            && let Some((base_from_flange, live)) = self.seen_now()
+            && let Ok(Found::Arc(arc)) = &live.found
         {
-            found.push(Seen { base_from_flange, arc, profile, peak: None });
+            found.push(Seen { base_from_flange, arc, profile: &live.reading.profile, peak: None });
         }
         found
     }
@@ -164,21 +165,20 @@ impl Workbench {
             }
         }
         if found.is_empty()
-            && let Some((base_from_flange, profile, Ok(Found::Edge(edge)))) = self.seen_now()
+            && let Some((base_from_flange, live)) = self.seen_now()
+            && let Ok(Found::Edge(edge)) = &live.found
         {
             let [x, z] = edge.point_mm;
-            found.push(SeenPoint::new(base_from_flange, None, Vec3::new(x, 0.0, z), profile));
+            found.push(SeenPoint::new(base_from_flange, None, Vec3::new(x, 0.0, z), &live.reading.profile));
         }
         found
     }
 
     /// What is seen where the robot stands.
-    #[expect(clippy::type_complexity, reason = "pose, profile and what is in it, taken apart at once")]
-    fn seen_now(&self) -> Option<(Transform<Base, Flange>, &Profile, &Result<Found, crate::fit::Refusal>)> {
+    fn seen_now(&self) -> Option<(Transform<Base, Flange>, &LiveProfile)> {
         let view = &self.cell.view;
         let (live, report) = (view.live.as_ref()?, view.robot.latest.as_ref()?);
-        let is_ready = view.robot.state == LinkState::Ready;
-        is_ready.then_some((report.base_from_flange, &*live.reading.profile, &live.found))
+        (view.robot.state == LinkState::Ready).then_some((report.base_from_flange, live))
     }
 
     fn peak_of(&self, station: &Station) -> Option<&FoundPeak> {

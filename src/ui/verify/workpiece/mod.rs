@@ -26,6 +26,9 @@ const PLANES_HEIGHT: f32 = 264.0;
 /// Height of the teeth and the diameter.
 const SHAPES_HEIGHT: f32 = 216.0;
 
+/// Width from which all controls have room in one row.
+const ONE_ROW_FROM: f32 = 720.0;
+
 /// What the section remembers between frames.
 #[derive(Debug, Default)]
 pub(super) struct WorkpieceState {
@@ -142,6 +145,7 @@ fn controls(ui: &mut Ui, context: &mut PanelContext<'_>, names: &[String]) {
     let workbench = context.workbench;
     let scans = workbench.scans();
     let chosen = scans.chosen().cloned();
+    let is_narrow = ui.available_width() < ONE_ROW_FROM;
     ui.horizontal(|ui| {
         if !names.is_empty() {
             let scan_idx = chosen.as_ref().map_or(0, |(scan_idx, _)| *scan_idx);
@@ -175,29 +179,38 @@ fn controls(ui: &mut Ui, context: &mut PanelContext<'_>, names: &[String]) {
                 ask(context, ScanCommand::Examine { scan_idx, calibration: through });
             }
         }
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            if let Some(progress) = scans.export_progress() {
-                if ui.button(words::CANCEL).clicked() {
-                    ask(context, ScanCommand::Cancel);
-                }
-                ui.add(ProgressBar::new(progress.fraction()).desired_width(110.0).text(words::EXPORTING));
-            } else {
-                let export = ui.add_enabled(scans.examined().is_some(), egui::Button::new(words::EXPORT_POINTS));
-                if export.on_hover_text(words::EXPORT_POINTS_HINT).clicked() {
-                    context.actions.push(Action::ExportPoints);
-                }
-            }
-            if ui.button(words::OPEN_POINTS).on_hover_text(words::OPEN_POINTS_HINT).clicked() {
-                context.actions.push(Action::OpenPoints);
-            }
-            if scans.is_working() {
-                if ui.button(words::CANCEL).clicked() {
-                    ask(context, ScanCommand::Cancel);
-                }
-                ui.label(theme::dim(ui, words::EXAMINING));
-            }
-        });
+        if !is_narrow {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| file_buttons(ui, context));
+        }
     });
+    if is_narrow {
+        ui.horizontal(|ui| file_buttons(ui, context));
+    }
+}
+
+/// What is done with points and files; from the right to the left where there is room.
+fn file_buttons(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let scans = context.workbench.scans();
+    if let Some(progress) = scans.export_progress() {
+        if ui.button(words::CANCEL).clicked() {
+            ask(context, ScanCommand::Cancel);
+        }
+        ui.add(ProgressBar::new(progress.fraction()).desired_width(110.0).text(words::EXPORTING));
+    } else {
+        let export = ui.add_enabled(scans.examined().is_some(), egui::Button::new(words::EXPORT_POINTS));
+        if export.on_hover_text(words::EXPORT_POINTS_HINT).clicked() {
+            context.actions.push(Action::ExportPoints);
+        }
+    }
+    if ui.button(words::OPEN_POINTS).on_hover_text(words::OPEN_POINTS_HINT).clicked() {
+        context.actions.push(Action::OpenPoints);
+    }
+    if scans.is_working() {
+        if ui.button(words::CANCEL).clicked() {
+            ask(context, ScanCommand::Cancel);
+        }
+        ui.label(theme::dim(ui, words::EXAMINING));
+    }
 }
 
 fn name_of(calibration: &ScanCalibration) -> String {
@@ -233,7 +246,11 @@ fn picture(ui: &mut Ui, context: &mut PanelContext<'_>, scan: &ExaminedScan, hei
     let WorkpieceState { view, tool, color_by, colors, .. } = state;
     // The header's buttons are drawn first, and the picture already follows them.
     let (look_along, by, with) = (Cell::new(None), Cell::new(*color_by), Cell::new(*tool));
-    let title = words::picture_title(&scan.name, scan.cloud.len(), scan.num_profiles);
+    // In a narrow window the tools take the room of the title and of the words before them; the picture says how many points.
+    // With no title at all there would be no row for the tools.
+    let is_narrow = ui.available_width() < ONE_ROW_FROM;
+    let title =
+        if is_narrow { " ".to_owned() } else { words::picture_title(&scan.name, scan.cloud.len(), scan.num_profiles) };
     let answer = widgets::card_with_height(
         ui,
         &title,
@@ -244,14 +261,18 @@ fn picture(ui: &mut Ui, context: &mut PanelContext<'_>, scan: &ExaminedScan, hei
                     look_along.set(Some(axis));
                 }
             }
-            ui.label(theme::dim(ui, words::LOOK_ALONG));
+            if !is_narrow {
+                ui.label(theme::dim(ui, words::LOOK_ALONG));
+            }
             ui.add_space(8.0);
             for (choice, name) in ColorBy::ALL.into_iter().rev() {
                 if ui.selectable_label(by.get() == choice, name).clicked() {
                     by.set(choice);
                 }
             }
-            ui.label(theme::dim(ui, words::COLOR_BY));
+            if !is_narrow {
+                ui.label(theme::dim(ui, words::COLOR_BY));
+            }
             ui.add_space(8.0);
             for (choice, name, hint) in [
                 (Tool::Rectangle, words::TOOL_RECTANGLE, words::TOOL_RECTANGLE_HINT),

@@ -20,6 +20,8 @@ use super::colors::region_color;
 const HISTOGRAM_PART: f32 = 0.3;
 /// Width from which the histogram has room beside the planes.
 const SIDE_BY_SIDE_FROM: f32 = 860.0;
+/// Width from which two angles have room side by side.
+const TWO_ANGLES_FROM: f32 = 600.0;
 /// Angles shown; those of the largest planes come first.
 const MOST_ANGLES: usize = 6;
 
@@ -63,12 +65,14 @@ pub(super) fn show(
         },
         |ui| {
             let angles = angles(scan);
+            let num_columns: u8 = if ui.available_width() < TWO_ANGLES_FROM { 1 } else { 2 };
             #[expect(clippy::cast_precision_loss, reason = "a few rows")]
-            let foot = if angles.is_empty() { 0.0 } else { 8.0 + 20.0 * angles.len().div_ceil(2) as f32 };
+            let foot =
+                if angles.is_empty() { 0.0 } else { 14.0 + 20.0 * angles.len().div_ceil(num_columns.into()) as f32 };
             let table_height = (ui.available_height() - foot).max(60.0);
             let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), table_height), Sense::hover());
             planes_table(&mut within(ui, rect), context, scan, table_height, state);
-            angle_rows(ui, &angles);
+            angle_rows(ui, &angles, num_columns);
         },
     );
     if find {
@@ -205,18 +209,19 @@ fn angles(scan: &ExaminedScan) -> Vec<(String, String)> {
         .take(MOST_ANGLES)
         .map(|(first, second)| {
             let (a, b) = (fits[first], fits[second]);
-            (words::angle_label(a.0, b.0), words::angle(a.1, b.1, scan.known.angle_deg))
+            (words::angle_label(a.0, b.0), words::angle(a.1, b.1, scan.known.angle_deg).replace('-', "−"))
         })
         .collect()
 }
 
-/// Two a row.
-fn angle_rows(ui: &mut Ui, angles: &[(String, String)]) {
-    for pair in angles.chunks(2) {
+/// One or two a row.
+fn angle_rows(ui: &mut Ui, angles: &[(String, String)], num_columns: u8) {
+    let part = 1.0 / f32::from(num_columns);
+    for pair in angles.chunks(num_columns.into()) {
         let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), 16.0), Sense::hover());
         for (column, (label, value)) in [0.0, 0.5].into_iter().zip(pair) {
             let left = row.left() + 12.0 + column * row.width();
-            let cell = row.with_min_x(left).with_max_x(left + row.width() / 2.0 - 24.0);
+            let cell = row.with_min_x(left).with_max_x(left + part * row.width() - 24.0);
             let mut inside = ui.new_child(UiBuilder::new().max_rect(cell));
             inside.horizontal(|ui| {
                 ui.label(theme::dim(ui, label));
