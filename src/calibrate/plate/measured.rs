@@ -147,18 +147,21 @@ fn is_copy(one: &Measured<'_>, other: &Measured<'_>) -> bool {
 }
 
 /// Where the points of an edge are missing up to the surface behind it, that surface is in the edge's shadow, and the edge is
-/// where its own points end. But a shadow falls at most stations; where hardly another shows one, a hole in the
-/// measurement hides the edge, which may be anywhere in it.
+/// where its own points end. A shadow falls at every station that is tilted to that side; where hardly another shows one, a
+/// hole in the measurement hides the edge, which may be anywhere in it.
 fn place_in_holes(points: &mut [Measured<'_>]) {
-    /// One in so many of the other points of the edge with a gap of at least half the size make it a shadow.
-    const SHADOW_ONE_IN: usize = 3;
+    /// So many other points of the edge with a gap of at least half the size make it a shadow. Holes are rare, and shadows
+    /// are as different as the tilts: of nine stations only three may throw a long one.
+    const MAKE_A_SHADOW: usize = 2;
+    /// With few other points one in so many is enough.
+    const ONE_IN: usize = 3;
     let gaps: Vec<(Edge, f64)> = points.iter().map(|measured| (measured.point.edge, measured.gap_mm.norm())).collect();
     for (idx, measured) in points.iter_mut().enumerate() {
         let (edge, size_mm) = gaps[idx];
         let others = || gaps.iter().enumerate().filter(|(other, gap)| *other != idx && gap.0 == edge);
         let alike = others().filter(|(_, gap)| gap.1 >= size_mm / 2.0).count();
         let Some(covariance) = measured.covariance_mm2.as_mut().filter(|_| size_mm > 0.0) else { continue };
-        if SHADOW_ONE_IN * alike < others().count() {
+        if alike < MAKE_A_SHADOW.min(others().count().div_ceil(ONE_IN)) {
             let gap = measured.gap_mm;
             measured.point.point_in_sensor += Vec3::new(gap.x, 0.0, gap.y) / 2.0;
             *covariance += gap * gap.transpose() / 12.0;
