@@ -2,10 +2,10 @@
 #![expect(clippy::expect_used, reason = "a test that cannot run must fail")]
 
 use handeye::app::compare::distance_from_truth;
-use handeye::calibrate::{Method, MethodResult, Mount, best_available, solve_all};
-use handeye::diagnose::{Case, Diagnosis, Fault as Found, Remedy, diagnose, remedy};
-use handeye::geometry::{Transform, Vec3, stats};
-use handeye::session::{Session, ball_problem, measure, parse, samples};
+use handeye::calibrate::{Edge, Method, MethodResult, Mount, best_available, solve_all};
+use handeye::diagnose::{Case, Diagnosis, Fault as Found, Remedy, Severity, diagnose, diagnose_any, remedy};
+use handeye::geometry::{Rigid, Transform, Vec3, stats};
+use handeye::session::{Session, ball_problem, measure, parse, problem, samples};
 use handeye::simulate::{Dirt, Fault, SimulationOptions, simulate};
 use handeye::watch::Unwatched;
 
@@ -226,4 +226,56 @@ fn faults_come_first_where_no_noise_is_stated() {
             assert_eq!(codes.first(), Some(&fault.id()), "seed {seed}: {codes:?}");
         }
     }
+}
+
+/// A plate's station that is set to the edge it did not see is told apart from one with a wrong pose, and one click mends it.
+#[test]
+fn each_station_of_a_plate_at_the_wrong_edge_is_named_with_its_edge() {
+    let sample = samples::ALL.iter().find(|sample| sample.file_name == "plate.json").expect("a sample");
+    let session = parse(sample.json.as_bytes(), sample.file_name).expect("a sample");
+    // Some of its stations throw a shadow behind the edge, which is no hole over it.
+    assert!(diagnosed(&session).findings.iter().all(|finding| finding.severity == Severity::Note));
+    for station_idx in 0..session.stations.len() {
+        let mut mislabelled = session.clone();
+        let saw = session.stations[station_idx].edge.expect("an edge");
+        mislabelled.stations[station_idx].edge = Some(if saw == Edge::P { Edge::Q } else { Edge::P });
+        let diagnosis = diagnosed(&mislabelled);
+        let first = diagnosis.findings.first().expect("a finding");
+        assert_eq!(first.fault, Found::WrongEdge { station_idx, edge: saw });
+        let remedy = first.remedy.as_ref().expect("a remedy");
+        assert_eq!(remedy, &Remedy::SetEdge { station_idx, edge: saw });
+        assert_eq!(remedy::apply(&mislabelled, remedy), session);
+        let others = diagnosis.findings.iter().filter(|finding| finding.severity == Severity::Wrong).count();
+        assert_eq!(others, 1, "station {station_idx}: {:?}", diagnosis.findings);
+    }
+}
+
+/// From one station nobody can tell whether its pose is wrong or its profile.
+#[test]
+fn a_wrong_pose_at_a_plate_is_a_pose_or_a_profile() {
+    let sample = samples::ALL.iter().find(|sample| sample.file_name == "plate.json").expect("a sample");
+    let session = parse(sample.json.as_bytes(), sample.file_name).expect("a sample");
+    for (station_idx, shift_mm) in [(0, 3.0), (7, 20.0), (12, 90.0)] {
+        let mut bad = session.clone();
+        for capture in &mut bad.stations[station_idx].captures {
+            let pose = capture.base_from_flange.rigid();
+            let shifted = Rigid::translation(shift_mm, -0.5 * shift_mm, 0.8 * shift_mm) * *pose;
+            capture.base_from_flange = Transform::from_rigid(shifted);
+        }
+        let diagnosis = diagnosed(&bad);
+        let first = diagnosis.findings.first().expect("a finding");
+        assert!(
+            matches!(first.fault, Found::WrongStation { station_idx: found, .. } if found == station_idx),
+            "{:?}",
+            first.fault
+        );
+        assert_eq!(first.remedy, Some(Remedy::LeaveOut(vec![station_idx])));
+    }
+}
+
+fn diagnosed(session: &Session) -> Diagnosis {
+    let measured = measure(session, None, &mut Unwatched).expect("not cancelled");
+    let problem = problem(session, &measured).expect("a plate");
+    let results = problem.solve_all(problem.methods(), &mut Unwatched).expect("not cancelled");
+    diagnose_any(session, &problem, &results, &mut Unwatched).expect("not cancelled")
 }

@@ -24,8 +24,13 @@ pub enum Verdict {
 pub enum VerdictReason {
     /// The standard deviation of a point in the workspace, mm.
     WorkspacePoint(f64),
-    /// The left-out error is far above what the standard deviation promises, mm.
-    LeaveOneOut(f64),
+    /// The left-out error, which is above the standard deviation of that point.
+    LeaveOneOut {
+        /// How far stations are missed that the others predict, RMS, mm.
+        left_out_mm: f64,
+        /// The standard deviation of a point in the workspace, mm.
+        std_mm: f64,
+    },
     /// A warning, by its index in the solution, weighs more than the figures.
     Warning(usize),
     /// Nothing is left over to judge by.
@@ -41,7 +46,7 @@ pub fn judge(solution: &Solution) -> (Verdict, VerdictReason) {
     let workspace_std_mm = uncertainty.workspace_point_std_mm;
     let left_out_mm = solution.leave_one_out.map_or(0.0, |left_out| left_out.rms_mm);
     let (figure_mm, reason) = if left_out_mm > workspace_std_mm {
-        (left_out_mm, VerdictReason::LeaveOneOut(left_out_mm))
+        (left_out_mm, VerdictReason::LeaveOneOut { left_out_mm, std_mm: workspace_std_mm })
     } else {
         (workspace_std_mm, VerdictReason::WorkspacePoint(workspace_std_mm))
     };

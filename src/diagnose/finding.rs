@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use crate::calibrate::{SolveError, Warning};
+use crate::calibrate::{Edge, SolveError, Warning};
 use crate::geometry::{Rigid, Vec3};
 
 use super::convention::{PoseReading, ReadingFit};
@@ -138,6 +138,22 @@ pub enum Fault {
         /// The same for the others, median, mm.
         typical_mm: f64,
     },
+    /// A station at a plate contradicts the others: its pose or its profile is wrong.
+    WrongStation {
+        /// The station.
+        station_idx: usize,
+        /// How far its points are off the edge as the others have it, mm.
+        off_mm: f64,
+        /// The same for the others, median, mm.
+        typical_mm: f64,
+    },
+    /// A station saw the other edge of the plate than the session says.
+    WrongEdge {
+        /// The station.
+        station_idx: usize,
+        /// The edge that it fits.
+        edge: Edge,
+    },
     /// A station still has the pose of another one.
     StalePose {
         /// The station.
@@ -209,6 +225,8 @@ impl Fault {
             Self::Drift { .. } => "drift",
             Self::ToolFrame { .. } | Self::SensorIsTool { .. } => "tool-frame",
             Self::WrongPose { .. } => "wrong-pose",
+            Self::WrongStation { .. } => "wrong-station",
+            Self::WrongEdge { .. } => "wrong-edge",
             Self::StalePose { .. } => "stale-pose",
             Self::MixedOrder { .. } => "mixed-order",
             Self::TooFewCleanStations { .. } => "too-few-clean-stations",

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::calibrate::SideChoice;
+use crate::calibrate::{Edge, SideChoice};
 use crate::geometry::{Profile, Transform};
 use crate::session::{Reading, Session, Target};
 
@@ -20,6 +20,13 @@ pub enum Remedy {
     SetRadius(f64),
     /// Sides of the ball's centre.
     SetSides(Vec<(usize, SideChoice)>),
+    /// The edge of the plate that a station saw.
+    SetEdge {
+        /// The station.
+        station_idx: usize,
+        /// The edge.
+        edge: Edge,
+    },
     /// `(station, station whose poses it gets)`, all at once. A station whose poses go to another and that gets none is left
     /// out: nobody knows where it was.
     TakePosesFrom(Vec<(usize, usize)>),
@@ -57,6 +64,11 @@ pub fn apply(session: &Session, remedy: &Remedy) -> Session {
                 if let Some(station) = mended.stations.get_mut(*idx) {
                     station.side = *side;
                 }
+            }
+        }
+        Remedy::SetEdge { station_idx, edge } => {
+            if let Some(station) = mended.stations.get_mut(*station_idx) {
+                station.edge = Some(*edge);
             }
         }
         Remedy::TakePosesFrom(pairs) => {

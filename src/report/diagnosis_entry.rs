@@ -93,7 +93,9 @@ fn stations_of(fault: &Fault) -> Vec<usize> {
         Fault::TwinPoses { station_idxs, .. } => station_idxs.to_vec(),
         Fault::TravelOffNormal { station_idx, .. }
         | Fault::StepDiffersFromPose { station_idx, .. }
-        | Fault::WrongPose { station_idx, .. } => vec![*station_idx],
+        | Fault::WrongPose { station_idx, .. }
+        | Fault::WrongStation { station_idx, .. }
+        | Fault::WrongEdge { station_idx, .. } => vec![*station_idx],
         Fault::StalePose { station_idx, pose_of_idx, .. } => vec![*station_idx, *pose_of_idx],
         Fault::ToolFrame { from_station_idx, .. } => vec![*from_station_idx],
         Fault::MixedOrder { poses_from } => poses_from.iter().map(|(to, _)| *to).collect(),
@@ -130,7 +132,10 @@ fn numbers(fault: &Fault) -> Map<String, Value> {
             "angle_deg": flange_from_tool.rotation.angle().to_degrees(),
         }),
         Fault::SensorIsTool { distance_mm, angle_deg } => json!({ "distance_mm": distance_mm, "angle_deg": angle_deg }),
-        Fault::WrongPose { off_mm, typical_mm, .. } => json!({ "off_mm": off_mm, "typical_mm": typical_mm }),
+        Fault::WrongEdge { edge, .. } => json!({ "edge": edge.symbol() }),
+        Fault::WrongPose { off_mm, typical_mm, .. } | Fault::WrongStation { off_mm, typical_mm, .. } => {
+            json!({ "off_mm": off_mm, "typical_mm": typical_mm })
+        }
         Fault::StalePose { off_mm, .. } => json!({ "off_mm": off_mm }),
         Fault::TooFewCleanStations { clean, needed } => json!({ "clean": clean, "needed": needed }),
         Fault::NoiseAboveStated { ratio, p_value } => json!({ "ratio": ratio, "p_value": p_value }),

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use egui::{Context, Frame, Grid, Id, Key, Modal, TextEdit, Ui, WidgetInfo};
+use egui::{Context, Frame, Grid, Id, Key, Modal, ScrollArea, TextEdit, Ui, WidgetInfo};
 
 use crate::app::Workbench;
 use crate::text::{capture as capture_words, document as document_words, import as import_words, shell as words};
@@ -225,6 +225,9 @@ fn ask_replace(ctx: &Context, path: &Path) -> Option<bool> {
     answer
 }
 
+/// Height of all of the help but its list, and the window around it, points.
+const HELP_BESIDE_LIST: f32 = 180.0;
+
 /// Shows the shortcuts and what this program is; clears `open` when closed.
 pub fn help(ctx: &Context, workbench: &Workbench, open: &mut bool) {
     if !*open {
@@ -232,47 +235,51 @@ pub fn help(ctx: &Context, workbench: &Workbench, open: &mut bool) {
     }
     let response = modal(ctx, "help").show(ctx, |ui| {
         question_heading(ui, words::SHORTCUTS);
-        Grid::new("shortcuts").num_columns(2).spacing([24.0, 4.0]).show(ui, |ui| {
-            for action in [
-                Action::Open,
-                Action::Import,
-                Action::Save,
-                Action::SaveAs,
-                Action::Close,
-                Action::Quit,
-                Action::Undo,
-                Action::Redo,
-                Action::History,
-                Action::Help,
-            ] {
-                if let Some(shortcut) = action.shortcut() {
-                    let mut keys = ctx.format_shortcut(&shortcut);
-                    if action == Action::Redo {
-                        keys = words::either_key(&keys, &ctx.format_shortcut(&OTHER_REDO));
+        // Heading, button and margins keep their place in a low window; what is between them scrolls.
+        let room = ctx.content_rect().height() - HELP_BESIDE_LIST;
+        ScrollArea::vertical().max_height(room).show(ui, |ui| {
+            Grid::new("shortcuts").num_columns(2).spacing([24.0, 4.0]).show(ui, |ui| {
+                for action in [
+                    Action::Open,
+                    Action::Import,
+                    Action::Save,
+                    Action::SaveAs,
+                    Action::Close,
+                    Action::Quit,
+                    Action::Undo,
+                    Action::Redo,
+                    Action::History,
+                    Action::Help,
+                ] {
+                    if let Some(shortcut) = action.shortcut() {
+                        let mut keys = ctx.format_shortcut(&shortcut);
+                        if action == Action::Redo {
+                            keys = words::either_key(&keys, &ctx.format_shortcut(&OTHER_REDO));
+                        }
+                        key_row(ui, &keys, &action.label(workbench));
                     }
-                    key_row(ui, &keys, &action.label(workbench));
                 }
-            }
-            key_row(ui, import_words::PASTE_KEYS, import_words::PASTE);
-            key_row(ui, "1 2 3 4 5 6", words::KEYS_RAIL);
-            key_row(ui, capture_words::STOP_KEYS, capture_words::STOP_KEYS_HINT);
-            key_row(ui, "↑ ↓", words::KEYS_LIST);
-            key_row(ui, "← →", words::KEYS_STEPS);
-            key_row(ui, words::TAB, words::KEYS_TAB);
-            key_row(ui, words::SPACE, words::KEYS_SPACE);
-            key_row(ui, words::ESCAPE, words::KEYS_ESCAPE);
-            key_row(ui, "Ctrl + / Ctrl −", words::KEYS_SCALE);
-            key_row(ui, "Ctrl 0", words::KEYS_SCALE_BACK);
-            key_row(ui, words::DRAG, words::KEYS_PAN);
-            key_row(ui, words::CTRL_WHEEL, words::KEYS_ZOOM);
-            key_row(ui, words::RIGHT_DRAG, words::KEYS_BOX_ZOOM);
-            key_row(ui, words::DOUBLE_CLICK, words::KEYS_PLOT);
+                key_row(ui, import_words::PASTE_KEYS, import_words::PASTE);
+                key_row(ui, "1 … 7", words::KEYS_RAIL);
+                key_row(ui, capture_words::STOP_KEYS, capture_words::STOP_KEYS_HINT);
+                key_row(ui, "↑ ↓", words::KEYS_LIST);
+                key_row(ui, "← →", words::KEYS_STEPS);
+                key_row(ui, words::TAB, words::KEYS_TAB);
+                key_row(ui, words::SPACE, words::KEYS_SPACE);
+                key_row(ui, words::ESCAPE, words::KEYS_ESCAPE);
+                key_row(ui, "Ctrl + / Ctrl −", words::KEYS_SCALE);
+                key_row(ui, "Ctrl 0", words::KEYS_SCALE_BACK);
+                key_row(ui, words::DRAG, words::KEYS_PAN);
+                key_row(ui, words::CTRL_WHEEL, words::KEYS_ZOOM);
+                key_row(ui, words::RIGHT_DRAG, words::KEYS_BOX_ZOOM);
+                key_row(ui, words::DOUBLE_CLICK, words::KEYS_PLOT);
+            });
+            ui.add_space(16.0);
+            ui.label(theme::heading(words::ABOUT));
+            ui.add_space(8.0);
+            ui.label(words::ABOUT_TEXT);
+            ui.label(theme::dim(ui, words::version(env!("CARGO_PKG_VERSION"))));
         });
-        ui.add_space(16.0);
-        ui.label(theme::heading(words::ABOUT));
-        ui.add_space(8.0);
-        ui.label(words::ABOUT_TEXT);
-        ui.label(theme::dim(ui, words::version(env!("CARGO_PKG_VERSION"))));
         ui.add_space(16.0);
         if widgets::primary_button(ui, words::CLOSE).clicked() {
             ui.close();

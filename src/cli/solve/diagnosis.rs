@@ -10,7 +10,7 @@ use crate::plan::Plan;
 use crate::report::digits::fixed;
 use crate::report::result_file::Examination;
 use crate::session::Session;
-use crate::text::cli::NOTHING_WRONG_BUT_POORLY_KNOWN;
+use crate::text::cli::nothing_wrong_but_poorly_known;
 use crate::text::diagnosis as words;
 use crate::text::shell::more_of_a_kind;
 
@@ -23,7 +23,7 @@ pub fn section(session: &Session, results: &[MethodResult], examination: &Examin
     let solution = best_available(results);
     let is_good = solution.is_none_or(|solution| judge(solution).0 == Verdict::Good);
     findings(&mut out, session, examination, is_good);
-    let lines = solution.into_iter().flat_map(|solution| figures(solution, examination));
+    let lines = solution.into_iter().flat_map(|solution| figures(session, solution, examination));
     for line in lines.chain(examination.plan.and_then(|plan| next_pose(session, plan))) {
         writeln!(out, "  {line}").ok();
     }
@@ -33,7 +33,8 @@ pub fn section(session: &Session, results: &[MethodResult], examination: &Examin
 fn findings(out: &mut String, session: &Session, examination: &Examination<'_>, is_good: bool) {
     let findings = &examination.diagnosis.findings;
     if findings.is_empty() {
-        let sentence = if is_good { words::NOTHING_FOUND } else { NOTHING_WRONG_BUT_POORLY_KNOWN };
+        let has_next_pose = examination.plan.is_some_and(|plan| !plan.stations.is_empty());
+        let sentence = if is_good { words::NOTHING_FOUND } else { nothing_wrong_but_poorly_known(has_next_pose) };
         writeln!(out, "  {sentence}").ok();
     }
     for finding in findings {
@@ -66,7 +67,7 @@ fn findings(out: &mut String, session: &Session, examination: &Examination<'_>, 
     }
 }
 
-fn figures(solution: &Solution, examination: &Examination<'_>) -> Vec<String> {
+fn figures(session: &Session, solution: &Solution, examination: &Examination<'_>) -> Vec<String> {
     let validation = examination.diagnosis.validation.as_ref();
     let most_influential = validation.and_then(|validation| {
         let moves = |idx: usize| validation.influence[idx].moves_workspace_point_mm;
@@ -82,7 +83,7 @@ fn figures(solution: &Solution, examination: &Examination<'_>) -> Vec<String> {
         solution.uncertainty.as_ref().map(|uncertainty| words::accuracy_line(uncertainty, solution.mount)),
         Method::BALL.contains(&solution.method).then(|| words::radius_line(solution)),
         solution.radius.as_ref().map(words::estimated_radius_line),
-        solution.noise.as_ref().map(words::noise_line),
+        solution.noise.as_ref().map(|noise| words::noise_line(noise, &session.robot)),
     ]
     .into_iter()
     .flatten()

@@ -1,6 +1,7 @@
-//! What is wrong with a plate's session: a station that contradicts the rest, poses read in another way, and what the
+//! What is wrong with a plate's session: a station that saw the other edge or contradicts the rest, poses read in another way, and what the
 //! methods themselves say.
 
+mod edges;
 mod readings;
 mod stations;
 
@@ -29,10 +30,15 @@ pub(super) fn examine(
 ) -> Result<Diagnosis, Cancelled> {
     watch.report(0, 2)?;
     let best = best_available(results);
-    let mut findings = best.and_then(|solution| stations::examine(problem, solution)).unwrap_or_default();
     let mut ranking = Vec::new();
-    let is_named = !findings.is_empty();
     let scatter_mm = best.map_or(f64::INFINITY, |solution| solution.scatter.rms_mm);
+    // First, as a station at the wrong edge bends the solution so much that others seem to be off.
+    let at_wrong_edge = if scatter_mm > FAR_OFF_MM { edges::examine(problem, watch)? } else { None };
+    let mut findings = match at_wrong_edge {
+        Some(finding) => vec![finding],
+        None => best.and_then(|solution| stations::examine(problem, solution)).unwrap_or_default(),
+    };
+    let is_named = !findings.is_empty();
     if !is_named && scatter_mm > FAR_OFF_MM {
         let (misread, ranked) = readings::examine(session, problem, watch)?;
         ranking = ranked;

@@ -1,11 +1,14 @@
-//! Stations at a plate that contradict the rest, found by leaving them out one after the other.
+//! Stations at a plate that contradict the rest, found by leaving them out one after the other. Whether a pose or a profile
+//! is to blame cannot be told from one station; that it saw the other edge can.
 
 use crate::calibrate::plate::PlateRefit;
-use crate::calibrate::plate::points::NUM_UNKNOWNS;
-use crate::calibrate::{PlateFound, PlateProblem, PlateReduced, Solution};
+use crate::calibrate::plate::points::{EdgePoint, NUM_UNKNOWNS};
+use crate::calibrate::{Edge, PlateFound, PlateProblem, PlateReduced, Solution};
 use crate::diagnose::finding::{Evidence, Fault, Finding, Plot, Severity, StationBar};
 use crate::diagnose::remedy::Remedy;
 use crate::geometry::{Rigid, stats};
+
+use super::edges;
 
 /// Below this nobody need look, mm: the resolution of a good arm.
 const WORTH_NAMING_MM: f64 = 0.05;
@@ -13,6 +16,11 @@ const WORTH_NAMING_MM: f64 = 0.05;
 const MAX_CHANCE: f64 = 1e-4;
 /// Of more stations than this part being wrong, nobody can tell which ones.
 const MOST_WRONG_PART: f64 = 0.34;
+/// Points this many times nearer to the other edge than to their own, ...
+const FITS_OTHER_EDGE_RATIO: f64 = 4.0;
+/// ... and no further off it than this many times what the others are off theirs, are of that edge. An edge found without
+/// some of its points is less well known than they are.
+const FITS_OTHER_EDGE_TYPICAL: f64 = 10.0;
 /// Poses that differ by less were not measured anew: far below the noise of any arm (mm, rad).
 const SAME_POSE: f64 = 1e-5;
 
@@ -58,20 +66,21 @@ pub(super) fn examine(problem: &PlateProblem, solution: &Solution) -> Option<Vec
     let findings = accused.iter().filter_map(|station| {
         let (station_idx, _) = named(plate, *station)?;
         let off_mm = distances[*station];
+        let explains = before_mm / after_mm.max(1e-9);
+        let evidence =
+            Evidence { residual_mm: Some([before_mm, after_mm]), plot: Some(bars(plate, &distances, *station)) };
+        let (edge, off_other_mm) = off_other_edge(reduced, &rest, *station)?;
+        let is_of_other = off_other_mm * FITS_OTHER_EDGE_RATIO < off_mm
+            && off_other_mm < (FITS_OTHER_EDGE_TYPICAL * typical_mm).max(WORTH_NAMING_MM);
+        if is_of_other {
+            return Some(edges::finding(station_idx, edge, explains, evidence));
+        }
         let fault = match stale_from(problem, station_idx) {
             Some(pose_of_idx) => Fault::StalePose { station_idx, pose_of_idx, off_mm },
-            None => Fault::WrongPose { station_idx, off_mm, typical_mm },
+            None => Fault::WrongStation { station_idx, off_mm, typical_mm },
         };
-        Some(Finding {
-            fault,
-            severity: Severity::Wrong,
-            explains: before_mm / after_mm.max(1e-9),
-            evidence: Evidence {
-                residual_mm: Some([before_mm, after_mm]),
-                plot: Some(bars(plate, &distances, *station)),
-            },
-            remedy: Some(Remedy::LeaveOut(vec![station_idx])),
-        })
+        let remedy = Some(Remedy::LeaveOut(vec![station_idx]));
+        Some(Finding { fault, severity: Severity::Wrong, explains, evidence, remedy })
     });
     Some(findings.collect())
 }
@@ -113,6 +122,14 @@ fn left_out(reduced: &PlateReduced, accused: &[usize], station: usize) -> Option
 fn off_edge_mm(reduced: &PlateReduced, refit: &PlateRefit, station: usize) -> f64 {
     let own = reduced.points.iter().filter(|point| point.station == station);
     stats::rms(own.map(|point| refit.state.off_edge(point).norm()))
+}
+
+/// The edge that a station is not said to have seen, and the RMS distance of its points from that, mm.
+fn off_other_edge(reduced: &PlateReduced, refit: &PlateRefit, station: usize) -> Option<(Edge, f64)> {
+    let own = || reduced.points.iter().filter(|point| point.station == station);
+    let edge = edges::other(own().next()?.edge);
+    let turned = own().map(|point| EdgePoint { edge, ..*point });
+    Some((edge, stats::rms(turned.map(|point| refit.state.off_edge(&point).norm()))))
 }
 
 /// The session's index of a station, and its name.

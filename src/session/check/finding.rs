@@ -69,6 +69,15 @@ pub enum Finding {
         /// Which capture, from 0.
         capture_idx: usize,
     },
+    /// A reduced point that is not in the laser plane, where all that the sensor sees of an edge or a tip is.
+    PointOutsidePlane {
+        /// Its station.
+        label: String,
+        /// Which capture, from 0: the farthest.
+        capture_idx: usize,
+        /// Its distance from the plane, mm.
+        y_mm: f64,
+    },
     /// The robot moved by another distance than was commanded.
     StepDiffersFromPose {
         /// The station.
@@ -119,6 +128,7 @@ impl Finding {
             Self::TwinStations { .. } => "twin-stations",
             Self::NoReading { .. } => "no-reading",
             Self::EmptyProfile { .. } => "empty-profile",
+            Self::PointOutsidePlane { .. } => "point-outside-plane",
             Self::StepDiffersFromPose { .. } => "step-differs-from-pose",
             Self::FarPose { .. } => "far-pose",
             Self::FarFromOthers { .. } => "far-from-others",
@@ -139,6 +149,7 @@ impl Finding {
             Self::TwinStations { label, .. }
             | Self::NoReading { label, .. }
             | Self::EmptyProfile { label, .. }
+            | Self::PointOutsidePlane { label, .. }
             | Self::StepDiffersFromPose { label, .. }
             | Self::FarPose { label, .. }
             | Self::FarFromOthers { label, .. } => Some(label),

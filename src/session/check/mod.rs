@@ -18,6 +18,8 @@ use super::{Capture, Edge, FurtherTarget, Reading, Session, Station, Target};
 pub const TWIN_DISTANCE_MM: f64 = 0.5;
 /// ... this in orientation say the same thing twice.
 pub const TWIN_ANGLE_DEG: f64 = 0.5;
+/// A point further than this from the laser plane, mm, was not rounded there.
+pub const OUTSIDE_PLANE_MM: f64 = 1e-3;
 /// No arm reaches further; beyond it the unit was hardly millimetres.
 pub const REACH_MM: f64 = 10_000.0;
 /// A pose is far from the others if it is further from their middle than most by this factor ...
@@ -90,6 +92,10 @@ fn of_stations(target: &Target, stations: &[Station]) -> Vec<Finding> {
     let mut far = far_from_others(stations);
     for (station_idx, station) in stations.iter().enumerate() {
         findings.extend(empty_profiles(station));
+        // A ball's point is its centre, which is beside the plane.
+        if matches!(target, Target::RightAnglePlate | Target::Point) {
+            findings.extend(outside_plane(station));
+        }
         match far_pose(station) {
             Some(finding) => findings.push(finding),
             None => findings.extend(far.remove(&station_idx)),
@@ -131,6 +137,18 @@ fn empty_profiles(station: &Station) -> impl Iterator<Item = Finding> + '_ {
         }
         _ => None,
     })
+}
+
+fn outside_plane(station: &Station) -> Option<Finding> {
+    let y_mm = |capture: &Capture| match &capture.reading {
+        Reading::Point(point) => Some(point.y),
+        Reading::Profile(_) => None,
+    };
+    (station.captures.iter().enumerate())
+        .filter_map(|(capture_idx, capture)| Some((capture_idx, y_mm(capture)?)))
+        .filter(|(_, y_mm)| y_mm.abs() > OUTSIDE_PLANE_MM)
+        .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
+        .map(|(capture_idx, y_mm)| Finding::PointOutsidePlane { label: station.label.clone(), capture_idx, y_mm })
 }
 
 fn far_pose(station: &Station) -> Option<Finding> {

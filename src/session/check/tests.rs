@@ -193,3 +193,28 @@ fn findings_name_their_station_and_a_code() {
     let finding = Finding::EmptyProfile { label: "7".to_owned(), capture_idx: 0 };
     assert_eq!((finding.code(), finding.station_label()), ("empty-profile", Some("7")));
 }
+
+#[test]
+fn a_point_of_a_profiler_is_in_its_plane_but_a_balls_centre_is_not() {
+    let with_point = |target: Target| {
+        move |session: &mut Session| {
+            session.target = target;
+            for station in &mut session.stations {
+                station.edge = Some(Edge::P);
+            }
+            session.stations[1].captures[2].reading = Reading::Point(Vec3::new(1.0, -5.0, 80.0));
+            session.stations[2].captures[0].reading = Reading::Point(Vec3::new(1.0, 1e-12, 80.0));
+        }
+    };
+    let outside = Finding::PointOutsidePlane { label: "s1".to_owned(), capture_idx: 2, y_mm: -5.0 };
+    check(with_point(Target::Point), std::slice::from_ref(&outside));
+    check(
+        with_point(Target::RightAnglePlate),
+        &[
+            Finding::FewOnEdge { edge: Edge::P, num_enabled: 4, needed: STATIONS_AN_EDGE },
+            Finding::EdgeWithoutStations { edge: Edge::Q },
+            outside,
+        ],
+    );
+    check(with_point(Target::Ball { radius_mm: 15.0, radius_std_mm: None }), &[]);
+}

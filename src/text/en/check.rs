@@ -49,6 +49,11 @@ pub fn finding_message(finding: &Finding) -> String {
         Finding::EmptyProfile { label, capture_idx } => {
             format!("Station {label}, profile {}: no valid point.", capture_idx + 1)
         }
+        Finding::PointOutsidePlane { label, capture_idx, y_mm } => format!(
+            "Station {label}, capture {}: the point is {} mm outside the laser plane (y is 0 there): check its columns.",
+            capture_idx + 1,
+            digits::plain(*y_mm, 3)
+        ),
         Finding::StepDiffersFromPose { label, capture_idx, step_mm, moved_mm } => format!(
             "Station {label}, profile {}: the step was {step_mm:.3} mm, but the recorded poses are {moved_mm:.3} mm apart.",
             capture_idx + 1

@@ -4,6 +4,8 @@ use crate::calibrate::{Edge, Method, Mount, Verdict, VerdictReason, Warning};
 use crate::diagnose::Reason;
 use crate::session::{Session, Target};
 
+use crate::text::digits;
+
 use super::diagnosis::{fault_message, target_word};
 use super::edges::edge_name;
 use super::{method_name, method_short_name, plural, verdict_name, warning_message};
@@ -18,11 +20,16 @@ pub fn verdict_line(verdict: Verdict, reason: Reason<'_>, warnings: &[Warning], 
     };
     match reason {
         VerdictReason::WorkspacePoint(std_mm) => {
-            format!("{name}: a point in the workspace is known to ± {std_mm:.2} mm (1 σ, 3D)")
+            format!(
+                "{name}: a point in the workspace is known to ± {} mm (1 σ, 3D)",
+                digits::value(std_mm, Some(std_mm))
+            )
         }
-        VerdictReason::LeaveOneOut(error_mm) => {
-            format!("{name}: a station predicted by the others is missed by {error_mm:.2} mm (RMS)")
-        }
+        VerdictReason::LeaveOneOut { left_out_mm, std_mm } => format!(
+            "{name}: a point in the workspace is known to ± {} mm (1 σ, 3D); a station predicted by the others is missed by {} mm (RMS)",
+            digits::value(std_mm, Some(std_mm)),
+            digits::value(left_out_mm, Some(left_out_mm))
+        ),
         VerdictReason::Warning(idx) => {
             let message = warnings.get(idx).map_or_else(String::new, warning_message);
             format!("{name}: {message}")
@@ -61,8 +68,14 @@ pub fn further_line(session: &Session) -> String {
 }
 
 /// Nothing is wrong with a result that is not good all the same.
-pub const NOTHING_WRONG_BUT_POORLY_KNOWN: &str =
-    "Nothing is wrong with the session, but the result is not well known. Add stations; the next pose helps most.";
+#[must_use]
+pub const fn nothing_wrong_but_poorly_known(has_next_pose: bool) -> &'static str {
+    if has_next_pose {
+        "Nothing is wrong with the session, but the result is not well known. Add stations; the next pose helps most."
+    } else {
+        "Nothing is wrong with the session, but the result is not well known. Add stations with other orientations."
+    }
+}
 
 /// Why no poses are planned from a result.
 #[must_use]

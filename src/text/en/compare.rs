@@ -2,6 +2,7 @@
 
 use crate::calibrate::{Method, Solution, VerdictReason};
 use crate::session::Target;
+use crate::text::digits;
 
 use super::{methods, warnings};
 
@@ -324,11 +325,13 @@ pub fn station_readout(label: &str, method: &str, figures: &str) -> String {
 pub fn verdict_reason(solution: &Solution, reason: VerdictReason) -> String {
     match reason {
         VerdictReason::WorkspacePoint(std_mm) => {
-            format!("The standard deviation of a point in the workspace is {std_mm:.2} mm.")
+            format!("A point in the workspace is known to ± {} mm (1 σ).", digits::value(std_mm, Some(std_mm)))
         }
-        VerdictReason::LeaveOneOut(error_mm) => {
-            format!("Stations left out are missed by {error_mm:.2} mm RMS, more than the standard deviation promises.")
-        }
+        VerdictReason::LeaveOneOut { left_out_mm, std_mm } => format!(
+            "A point in the workspace is known to ± {} mm (1 σ). Stations that the others predict are missed by {} mm RMS, their own noise included; the larger figure decides.",
+            digits::value(std_mm, Some(std_mm)),
+            digits::value(left_out_mm, Some(left_out_mm))
+        ),
         VerdictReason::Warning(warning_idx) => solution.warnings.get(warning_idx).map_or_else(String::new, |warning| {
             format!("The figures are small, but: {}", warnings::warning_message(warning))
         }),

@@ -145,6 +145,7 @@ pub fn finding_word(finding: &Finding) -> String {
         Finding::NoReading { .. } => "no profile".to_owned(),
         Finding::EmptyProfile { .. } => "no points".to_owned(),
         Finding::StepDiffersFromPose { .. } => "step".to_owned(),
+        Finding::PointOutsidePlane { .. } => "off the plane".to_owned(),
         Finding::FarPose { .. } => "out of reach".to_owned(),
         Finding::FarFromOthers { .. } => "far off".to_owned(),
         Finding::QuaternionsNormalised { .. }

@@ -356,7 +356,7 @@ pub const SHORTCUTS: &str = "Shortcuts";
 /// Heading of the help window.
 pub const ABOUT: &str = "About";
 /// The program in a sentence.
-pub const ABOUT_TEXT: &str = "A workbench for the hand-eye calibration of robot-mounted laser profilers, after Lin and Mu (2019) and Chen et al. (2023).";
+pub const ABOUT_TEXT: &str = "A workbench for the hand-eye calibration of robot-mounted laser profilers, after Lin and Mu (2019: ball, fixed point and largest arc) and Chen et al. (2023: right-angle plate, verification). Files of RGB-D sequences (CN102692236) are kept, but not solved.";
 /// Shortcut's explanation.
 pub const KEYS_RAIL: &str = "go to a step of the rail";
 /// Shortcut's explanation.

@@ -149,8 +149,11 @@ fn of_points(plate: &PlateFound, fault: Option<&Fault>) -> Vec<StationBar> {
                 station_idx: point.station_idx,
                 label: point.label.clone(),
                 error_mm,
-                is_accused: matches!(fault, Some(Fault::TwinPoses { station_idxs, .. })
-                    if station_idxs.contains(&point.station_idx)),
+                is_accused: match fault {
+                    Some(Fault::TwinPoses { station_idxs, .. }) => station_idxs.contains(&point.station_idx),
+                    Some(Fault::WrongEdge { station_idx, .. }) => *station_idx == point.station_idx,
+                    _ => false,
+                },
             }),
         }
     }

@@ -57,9 +57,9 @@ impl Checks {
                     without_points.insert((label.to_owned(), *capture_idx));
                     Some(*capture_idx)
                 }
-                Finding::StepDiffersFromPose { capture_idx, .. } | Finding::FarPose { capture_idx, .. } => {
-                    Some(*capture_idx)
-                }
+                Finding::PointOutsidePlane { capture_idx, .. }
+                | Finding::StepDiffersFromPose { capture_idx, .. }
+                | Finding::FarPose { capture_idx, .. } => Some(*capture_idx),
                 _ => None,
             };
             let sentence = finding_message(&finding);

@@ -6,6 +6,7 @@ use egui::{Context, ViewportCommand};
 
 use crate::app::{Command, NoticeKind};
 use crate::calibrate::Method;
+use crate::session::Target;
 use crate::text::document::READ_ONLY;
 use crate::text::shell as words;
 use crate::ui::Selection;
@@ -28,7 +29,8 @@ impl Shell {
         };
         if document.id() != self.seen_document {
             self.seen_document = document.id();
-            self.selection = Selection { method: self.selection.method, ..Selection::default() };
+            let method = method_for(&document.session.target, self.selection.method);
+            self.selection = Selection { method, ..Selection::default() };
             self.poses = PosesState::default();
             self.arcs = ArcsState::default();
             self.compare = CompareState::default();
@@ -67,8 +69,12 @@ impl Shell {
         self.seen_results = results.revision;
         let has_solution = |method: &Method| results.method(*method).is_some_and(|result| result.outcome.is_ok());
         if is_first || !has_solution(&self.selection.method) {
-            let by_trust = Method::BEST_FIRST;
-            if let Some(method) = by_trust.into_iter().find(has_solution) {
+            let trusted = Method::BEST_FIRST.into_iter().find(has_solution);
+            let of_target = || {
+                let document = self.workbench.document()?;
+                Some(method_for(&document.session.target, self.selection.method))
+            };
+            if let Some(method) = trusted.or_else(of_target) {
                 self.selection.method = method;
             }
         }
@@ -90,4 +96,18 @@ impl Shell {
         }
         ctx.request_repaint_after(Duration::from_secs_f64(DONE_NOTICE_SECONDS));
     }
+}
+
+/// The method selected so far if it is one of the target's, else the target's that is to be trusted most.
+fn method_for(target: &Target, selected: Method) -> Method {
+    let of_target: &[Method] = match target {
+        Target::Ball { .. } => &Method::BALL,
+        Target::RightAnglePlate => &Method::PLATE,
+        Target::Point => &Method::POINT,
+        Target::Workpiece | Target::Rgbd { .. } => &[],
+    };
+    if of_target.contains(&selected) {
+        return selected;
+    }
+    Method::BEST_FIRST.into_iter().find(|method| of_target.contains(method)).unwrap_or(selected)
 }

@@ -6,13 +6,14 @@ use crate::diagnose::{Axis, Fault, PoseReading};
 use crate::geometry::Vec3;
 use crate::session::{Session, Target};
 use crate::text::digits::{decimals_for, fixed};
+use crate::text::edges::edge_name;
 use crate::text::en::plural;
 use crate::text::{warning_message, warning_remedy};
 
 use super::readings::{pose_reading, pose_reading_in_full};
 use super::words::{
-    along, along_axis_of, axis_in_words, axis_name, capitalised, chance, exchanged_poses, seen_word, size,
-    station_label, stations, target_frame, target_word, with_std,
+    along, along_axis_of, axis_in_words, axis_name, capitalised, chance, exchanged_poses, reading_word, seen_word,
+    size, station_label, stations, target_frame, target_word, with_std,
 };
 
 /// A few words for lists.
@@ -35,6 +36,8 @@ pub fn fault_title(fault: &Fault) -> &'static str {
         Fault::ToolFrame { .. } => "TOOL was switched",
         Fault::SensorIsTool { .. } => "Poses of the sensor, not of the flange",
         Fault::WrongPose { .. } => "Wrong pose",
+        Fault::WrongStation { .. } => "Wrong pose or profile",
+        Fault::WrongEdge { .. } => "Wrong edge",
         Fault::StalePose { .. } => "Old pose",
         Fault::MixedOrder { .. } => "Mixed-up order",
         Fault::TooFewCleanStations { .. } => "Too few good stations",
@@ -169,6 +172,18 @@ pub fn fault_message(fault: &Fault, session: &Session) -> String {
             size(*off_mm),
             size(*typical_mm)
         ),
+        Fault::WrongStation { station_idx, off_mm, typical_mm } => format!(
+            "Station {} contradicts the others: its {} or its pose is wrong. It is {} mm off the edge as the others have it, against {} mm typically.",
+            label(station_idx),
+            reading_word(session, *station_idx),
+            size(*off_mm),
+            size(*typical_mm)
+        ),
+        Fault::WrongEdge { station_idx, edge } => format!(
+            "Station {} fits the line of edge {}, not that of the edge that it is set to.",
+            label(station_idx),
+            edge_name(*edge)
+        ),
         Fault::StalePose { station_idx, pose_of_idx, off_mm } => format!(
             "Station {} still has the pose of station {}: its {} is {} mm from where the others have it.",
             label(station_idx),
@@ -297,6 +312,8 @@ pub fn fault_remedy(fault: &Fault, session: &Session) -> String {
             "To check a TOOL, read the result as its error. To calibrate, switch the TOOL off and record the flange's poses."
         }
         Fault::WrongPose { .. } => "Leave this station out, or measure it again.",
+        Fault::WrongStation { .. } => "Look at it in Arcs and check its pose; then leave it out, or measure it again.",
+        Fault::WrongEdge { edge, .. } => return format!("Change its edge to {}.", edge_name(*edge)),
         Fault::StalePose { .. } => "Leave this station out, or enter its own pose.",
         Fault::MixedOrder { .. } => "Give each profile the pose that fits it, and check the order of the recording.",
         Fault::TooFewCleanStations { .. } => "Check the poses one by one, and measure more stations.",

@@ -3,7 +3,7 @@
 use crate::calibrate::validation::{Bootstrap, Influence, Normality, SplitHalf};
 use crate::calibrate::{Edge, EstimatedRadius, Mount, NoiseModel, Solution, Uncertainty};
 use crate::diagnose::{CurveAxis, Plot};
-use crate::session::Target;
+use crate::session::{Robot, Target};
 use crate::text::digits::{decimals_for, fixed};
 use crate::text::edges::edge_name;
 
@@ -105,11 +105,20 @@ pub fn accuracy_line(uncertainty: &Uncertainty, mount: Mount) -> String {
     )
 }
 
-/// The noise of the robot that the weights stand for.
+/// The noise of the robot: what the session states, and what the weights stand for where the data refute that.
 #[must_use]
-pub fn noise_line(noise: &NoiseModel) -> String {
+pub fn noise_line(noise: &NoiseModel, robot: &Robot) -> String {
     let angle = |std_rad: f64| size(std_rad.to_degrees());
-    let source = if noise.is_stated { "stated" } else { "estimated" };
+    let stated = robot.position_std_mm.zip(robot.orientation_std_deg).filter(|_| noise.is_stated);
+    let (position_std_mm, orientation_std_deg) =
+        stated.unwrap_or((noise.position_std_mm, noise.orientation_std_rad.to_degrees()));
+    let source = if stated.is_some() { "stated" } else { "estimated" };
+    let is_refuted = stated.is_some() && noise.above_stated.is_some_and(|above| above.is_contradicted());
+    let shown = if is_refuted {
+        format!("; the data show {} mm, {}°", size(noise.position_std_mm), angle(noise.orientation_std_rad))
+    } else {
+        String::new()
+    };
     let common = if noise.station_position_std_mm > 0.0 || noise.station_orientation_std_rad > 0.0 {
         format!(
             "; common to the captures of a station {} mm, {}°",
@@ -120,9 +129,9 @@ pub fn noise_line(noise: &NoiseModel) -> String {
         String::new()
     };
     format!(
-        "noise of the robot, {source}: {} mm, {}° a pose{common}",
-        size(noise.position_std_mm),
-        angle(noise.orientation_std_rad)
+        "noise of the robot, {source}: {} mm, {}° a pose{shown}{common}",
+        size(position_std_mm),
+        size(orientation_std_deg)
     )
 }
 

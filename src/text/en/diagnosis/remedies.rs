@@ -4,6 +4,7 @@ use crate::calibrate::SideChoice;
 use crate::diagnose::Remedy;
 use crate::session::Session;
 use crate::text::digits::fixed;
+use crate::text::edges::edge_name;
 use crate::text::poses;
 
 use super::readings::pose_reading;
@@ -17,6 +18,9 @@ pub fn remedy_label(remedy: &Remedy, session: &Session) -> String {
         Remedy::ReadPosesAs(reading) => format!("Read poses as {}", pose_reading(reading)),
         Remedy::SetRadius(found_mm) => format!("Set radius to {} mm", fixed(*found_mm, RADIUS_DECIMALS)),
         Remedy::SetSides(sides) => sides_label(session, sides),
+        Remedy::SetEdge { station_idx, edge } => {
+            format!("Set edge of station {} to {}", station_label(session, *station_idx), edge_name(*edge))
+        }
         Remedy::TakePosesFrom(pairs) => exchange_label(session, pairs),
         Remedy::ScaleProfiles(factor) => format!("Scale profiles by {}", fixed(*factor, FACTOR_DECIMALS)),
         Remedy::MirrorProfiles(axis) => format!("Turn {} axis of profiles", axis_name(*axis)),

@@ -1,7 +1,7 @@
 //! Every fault has its words, and they are short.
 
 use super::*;
-use crate::calibrate::{Mount, SideChoice, SolveError, Warning};
+use crate::calibrate::{Edge, Mount, SideChoice, SolveError, Warning};
 use crate::diagnose::convention::{AngleUnit, Inversion, LengthUnit, QuaternionOrder, RotationReading};
 use crate::diagnose::{Axis, Fault, PoseReading, Remedy};
 use crate::geometry::Vec3;
@@ -100,6 +100,8 @@ fn faults() -> Vec<Fault> {
         Fault::ToolFrame { from_station_idx: 5, flange_from_tool: Rigid::translation(0.0, 0.0, 120.0) },
         Fault::SensorIsTool { distance_mm: 0.4, angle_deg: 0.02 },
         Fault::WrongPose { station_idx: 3, off_mm: 2.13, typical_mm: 0.031 },
+        Fault::WrongStation { station_idx: 3, off_mm: 2.13, typical_mm: 0.031 },
+        Fault::WrongEdge { station_idx: 3, edge: Edge::Q },
         Fault::StalePose { station_idx: 3, pose_of_idx: 2, off_mm: 32.0 },
         Fault::MixedOrder { poses_from: vec![(3, 4), (4, 3)] },
         Fault::MixedOrder { poses_from: (0..9).map(|idx| (idx, 8 - idx)).collect() },
@@ -167,6 +169,7 @@ fn buttons_say_what_they_do() {
             "Give station 4 the pose of station 5",
             "give station 4 the pose of station 5",
         ),
+        (Remedy::SetEdge { station_idx: 3, edge: Edge::Q }, "Set edge of station 4 to q", "set edge of station 4 to q"),
         (Remedy::ScaleProfiles(1.012), "Scale profiles by 1.0120", "scale profiles by 1.0120"),
         (Remedy::MirrorProfiles(Axis::Z), "Turn z axis of profiles", "turn z axis of profiles"),
         (

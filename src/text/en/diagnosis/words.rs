@@ -3,7 +3,7 @@
 use crate::calibrate::Mount;
 use crate::diagnose::Axis;
 use crate::geometry::Vec3;
-use crate::session::{Session, Target};
+use crate::session::{Reading, Session, Target};
 use crate::text::digits::{decimals_for, fixed};
 
 /// A direction of the frame that the sensor is mounted on, as an adverb: "along the flange's z".
@@ -132,5 +132,14 @@ pub(super) const fn seen_word(target: &Target) -> &'static str {
     match target {
         Target::RightAnglePlate => "point on the edge",
         other => target_word(other),
+    }
+}
+
+/// What was read at a station.
+pub(super) fn reading_word(session: &Session, station_idx: usize) -> &'static str {
+    let capture = session.stations.get(station_idx).and_then(|station| station.captures.first());
+    match capture.map(|capture| &capture.reading) {
+        Some(Reading::Point(_)) => "point",
+        _ => "profile",
     }
 }
