@@ -222,8 +222,8 @@ fn the_help_fits_into_a_low_window() {
         for place in [heading, button.rect()] {
             assert!(screen.contains_rect(place), "{place} in {size:?}");
         }
-        button.click();
-        harness.run_steps(3);
+        button.click_accesskit();
+        harness.run_steps(8);
         assert!(harness.query_by_label(shell_words::SHORTCUTS).is_none());
     }
 }
