@@ -451,7 +451,7 @@ fn a_wrong_pose_at_a_plate_or_tip_is_named() {
         *pose = shift * *pose;
         let found = diagnosed(&plate_session(&plate), &Problem::Plate(plate.clone()));
         let first = found.first().expect("a finding");
-        assert!(matches!(first.fault, Fault::WrongPose { station_idx: 4, .. }), "plate {seed}: {first:?}");
+        assert!(matches!(first.fault, Fault::WrongStation { station_idx: 4, .. }), "plate {seed}: {first:?}");
         assert_eq!(first.remedy, Some(Remedy::LeaveOut(vec![4])));
         assert_eq!(found.iter().filter(|finding| finding.severity == Severity::Wrong).count(), 1, "{seed}: {found:?}");
 

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use eframe::App as _;
+use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
@@ -185,9 +186,11 @@ fn an_edit_is_undone_and_redone_with_keys_and_buttons() {
 #[test]
 fn digits_and_arrows_move_through_the_window() {
     let mut harness = window_with("few-rotations.json");
-    for (key, step) in [Key::Num5, Key::Num6, Key::Num2, Key::Num3, Key::Num1, Key::Num4].into_iter().zip([
+    let keys = [Key::Num5, Key::Num6, Key::Num7, Key::Num2, Key::Num3, Key::Num1, Key::Num4];
+    for (key, step) in keys.into_iter().zip([
         Step::Compare,
         Step::Diagnosis,
+        Step::Verify,
         Step::Capture,
         Step::Arcs,
         Step::Session,
@@ -200,6 +203,29 @@ fn digits_and_arrows_move_through_the_window() {
     harness.key_press(Key::ArrowDown);
     harness.run_steps(2);
     harness.get_by_label(&shell_words::station_heading("2", Some(1)));
+}
+
+#[test]
+fn the_help_fits_into_a_low_window() {
+    for size in [[1100.0, 720.0], SIZE] {
+        let mut harness = Harness::builder()
+            .with_size(size)
+            .with_os(egui::os::OperatingSystem::Nix)
+            .build_eframe(|creation| Window::new(creation, Start::default()));
+        settle(&mut harness);
+        harness.key_press(Key::F1);
+        harness.run_steps(4);
+        let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
+        let heading = harness.get_by_label(shell_words::SHORTCUTS).rect();
+        // The list names an action that is called the same.
+        let button = harness.get_by_role_and_label(Role::Button, shell_words::CLOSE);
+        for place in [heading, button.rect()] {
+            assert!(screen.contains_rect(place), "{place} in {size:?}");
+        }
+        button.click_accesskit();
+        harness.run_steps(8);
+        assert!(harness.query_by_label(shell_words::SHORTCUTS).is_none());
+    }
 }
 
 #[test]

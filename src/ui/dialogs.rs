@@ -281,11 +281,9 @@ pub fn help(ctx: &Context, workbench: &Workbench, open: &mut bool) {
             ui.label(theme::dim(ui, words::version(env!("CARGO_PKG_VERSION"))));
         });
         ui.add_space(16.0);
-        if widgets::primary_button(ui, words::CLOSE).clicked() {
-            ui.close();
-        }
+        widgets::primary_button(ui, words::CLOSE).clicked()
     });
-    if response.should_close() {
+    if response.inner || response.should_close() {
         *open = false;
     }
 }
