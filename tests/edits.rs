@@ -116,7 +116,7 @@ fn known() -> impl Strategy<Value = Known> {
 fn further() -> impl Strategy<Value = FurtherTarget> {
     let known = prop_oneof![Just(Known::default()), known()];
     (label(), target(), known, prop::collection::vec(station(), 0..3)).prop_map(|(name, target, known, stations)| {
-        FurtherTarget { name, target, known, stations, unknown: serde_json::Map::new() }
+        FurtherTarget { name, target, known, profile_std_mm: None, stations, unknown: serde_json::Map::new() }
     })
 }
 
@@ -452,6 +452,7 @@ fn tip(name: &str, num_stations: usize) -> Edit {
         name: name.to_owned(),
         target: Target::Point,
         known: Known::default(),
+        profile_std_mm: None,
         stations,
         unknown: serde_json::Map::new(),
     }))

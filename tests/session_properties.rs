@@ -109,12 +109,16 @@ fn labelled(mut stations: Vec<Station>, target: &Target) -> Vec<Station> {
 }
 
 fn further() -> impl Strategy<Value = FurtherTarget> {
-    (target(), prop::collection::vec(station(), 0..3)).prop_map(|((target, known), stations)| FurtherTarget {
-        name: String::new(),
-        stations: labelled(stations, &target),
-        target,
-        known,
-        unknown: serde_json::Map::from_iter([("their".to_owned(), serde_json::json!([1]))]),
+    let std = prop::option::of(1e-3..1.0);
+    (target(), std, prop::collection::vec(station(), 0..3)).prop_map(|((target, known), profile_std_mm, stations)| {
+        FurtherTarget {
+            name: String::new(),
+            stations: labelled(stations, &target),
+            target,
+            known,
+            profile_std_mm,
+            unknown: serde_json::Map::from_iter([("their".to_owned(), serde_json::json!([1]))]),
+        }
     })
 }
 

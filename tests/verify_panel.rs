@@ -1,16 +1,17 @@
 //! The Verify step, driven by the names that screen readers see, in the whole window.
 
-use std::time::{Duration, Instant};
+mod step_window;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use handeye::app::{Command, Workbench};
+use handeye::app::Command;
 use handeye::scene::PartKind;
 use handeye::session::{self, Session};
 use handeye::simulate::{SimulationOptions, SimulationTarget, simulate};
 use handeye::text::verify as words;
-use handeye::ui::{Start, Step, Window};
+use handeye::ui::Window;
 use handeye::verify::Origin;
+use step_window::{apply, click, window_on, workbench};
 
 fn simulated(target: SimulationTarget, further: Vec<SimulationTarget>, seed: u64) -> Session {
     simulate(&SimulationOptions { seed, has_points: true, further, ..SimulationOptions::of(target) })
@@ -18,48 +19,6 @@ fn simulated(target: SimulationTarget, further: Vec<SimulationTarget>, seed: u64
 
 const PLATE: SimulationTarget = SimulationTarget::Part(PartKind::Plate);
 const TIP: SimulationTarget = SimulationTarget::Part(PartKind::Pin);
-
-fn workbench<'a>(harness: &'a Harness<'static, Window>) -> &'a Workbench {
-    harness.state().shell().workbench()
-}
-
-/// Runs until nothing is under way; how long that takes is the machine's affair.
-fn settle(harness: &mut Harness<'static, Window>) {
-    const PATIENCE: Duration = Duration::from_mins(2);
-    let start = Instant::now();
-    harness.run_steps(2);
-    while harness.state().shell().is_busy() {
-        assert!(start.elapsed() < PATIENCE, "{:?}", workbench(harness).notices());
-        harness.step();
-        std::thread::sleep(Duration::from_millis(2));
-    }
-    harness.run_steps(3);
-}
-
-fn window_on(session: Session) -> Harness<'static, Window> {
-    let mut harness = Harness::builder()
-        .with_size([1440.0, 900.0])
-        .with_os(egui::os::OperatingSystem::Nix)
-        .build_eframe(|creation| Window::new(creation, Start::default()));
-    let shell = harness.state_mut().shell_mut();
-    shell.workbench_mut().open_session(session, None);
-    settle(&mut harness);
-    harness.state_mut().shell_mut().go_to(Step::Verify);
-    settle(&mut harness);
-    harness
-}
-
-fn click(harness: &mut Harness<'static, Window>, name: &str) {
-    harness.get_by_label(name).scroll_to_me();
-    harness.run_steps(3);
-    harness.get_by_label(name).click();
-    settle(harness);
-}
-
-fn apply(harness: &mut Harness<'static, Window>, command: Command) {
-    harness.state_mut().shell_mut().workbench_mut().apply(command);
-    settle(harness);
-}
 
 fn type_into(harness: &mut Harness<'static, Window>, name: &str, text: &str) {
     let field = harness.get_by_label(name);
@@ -80,6 +39,25 @@ fn a_plate_shows_its_distances_at_once() {
     let found = workbench(&harness).verification().last().expect("verified").value.clone();
     let mean_mm = found.targets[0].rows[0].as_ref().expect("a plate").figures.mean_mm;
     assert!(harness.query_all_by_label(&format!("{mean_mm:.3}")).next().is_some());
+}
+
+#[test]
+fn a_calibration_is_hidden_in_charts_and_shown_again() {
+    let mut harness = window_on(simulated(PLATE, vec![TIP], 1));
+    click(&mut harness, words::CROSS_TARGET);
+    let names: Vec<String> = {
+        let found = &workbench(&harness).verification().last().expect("verified").value;
+        found.calibrations.iter().map(|known| words::calibration_name(&known.origin, found)).collect()
+    };
+    let [first, others @ ..] = names.as_slice() else { panic!("calibrations") };
+    for name in others {
+        click(&mut harness, &words::show_in_charts(name));
+    }
+    assert!(harness.query_by_label(words::ALL_HIDDEN).is_none());
+    click(&mut harness, &words::show_in_charts(first));
+    assert!(harness.query_by_label(words::ALL_HIDDEN).is_some());
+    click(&mut harness, &words::show_in_charts(first));
+    assert!(harness.query_by_label(words::ALL_HIDDEN).is_none());
 }
 
 #[test]
@@ -147,9 +125,10 @@ fn a_pasted_matrix_is_checked_and_judged_along() {
     assert!(harness.query_by_label("Not a rotation").is_some());
     type_into(&mut harness, words::GIVEN_NAME_FIELD, "Chen");
     click(&mut harness, words::GIVE);
-    let is_chen = |origin: &Origin| matches!(origin, Origin::Given { name } if name == "Chen");
+    let is_chen = |origin: &Origin| matches!(origin, Origin::Given { name, is_nearest: true } if name == "Chen");
     let found = &workbench(&harness).verification().last().expect("verified").value;
     assert!(found.calibrations.iter().any(|calibration| is_chen(&calibration.origin)));
+    assert!(harness.query_all_by_label_contains("Chen (nearest rotation)").next().is_some());
     click(&mut harness, &words::withdraw("Chen"));
     let found = &workbench(&harness).verification().last().expect("verified").value;
     assert!(!found.calibrations.iter().any(|calibration| is_chen(&calibration.origin)));

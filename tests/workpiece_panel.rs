@@ -1,21 +1,22 @@
 //! The Workpiece section of the Verify step, driven by the names that screen readers see, in the whole window.
 #![expect(clippy::expect_used, reason = "helpers of tests may fail as tests do")]
 
-use std::time::{Duration, Instant};
+mod step_window;
 
 use egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use handeye::app::workbench::scans::{ExaminedScan, ScanCalibration, ScanCommand};
-use handeye::app::{Command, Workbench};
+use handeye::app::Command;
+use handeye::app::workbench::scans::{ExaminedScan, RegionChoice, ScanCalibration, ScanCommand};
 use handeye::scan::files::read_cloud;
 use handeye::scene::{PITCH_MM, PartKind};
 use handeye::session::Session;
 use handeye::simulate::{SimulationOptions, SimulationTarget, simulate};
 use handeye::text::arcs as arcs_words;
 use handeye::text::workpiece as words;
-use handeye::ui::{Start, Step, Window};
+use handeye::ui::{Step, Window};
 use handeye::watch::Unwatched;
+use step_window::{apply, click, settle, window_of_size, window_on, workbench};
 
 /// A block and a toothed part, each scanned twice with a profile every 2 mm.
 fn parts(seed: u64) -> Session {
@@ -25,52 +26,12 @@ fn parts(seed: u64) -> Session {
     simulate(&SimulationOptions { seed, further, num_steps, step_mm: 2.0, num_points: 160, ..usual })
 }
 
-fn workbench<'a>(harness: &'a Harness<'static, Window>) -> &'a Workbench {
-    harness.state().shell().workbench()
-}
-
 fn examined<'a>(harness: &'a Harness<'static, Window>) -> &'a ExaminedScan {
     workbench(harness).scans().examined().expect("examined")
 }
 
-/// Runs until nothing is under way; how long that takes is the machine's affair.
-fn settle(harness: &mut Harness<'static, Window>) {
-    const PATIENCE: Duration = Duration::from_mins(2);
-    let start = Instant::now();
-    harness.run_steps(2);
-    while harness.state().shell().is_busy() {
-        assert!(start.elapsed() < PATIENCE, "{:?}", workbench(harness).notices());
-        harness.step();
-        std::thread::sleep(Duration::from_millis(2));
-    }
-    harness.run_steps(3);
-}
-
-fn window_of_size(session: Session, size: [f32; 2]) -> Harness<'static, Window> {
-    let mut harness = Harness::builder()
-        .with_size(size)
-        .with_os(egui::os::OperatingSystem::Nix)
-        .build_eframe(|creation| Window::new(creation, Start::default()));
-    let shell = harness.state_mut().shell_mut();
-    shell.workbench_mut().open_session(session, None);
-    settle(&mut harness);
-    harness.state_mut().shell_mut().go_to(Step::Verify);
-    settle(&mut harness);
-    harness
-}
-
-fn window_on(session: Session) -> Harness<'static, Window> {
-    window_of_size(session, [1440.0, 900.0])
-}
-
-fn click(harness: &mut Harness<'static, Window>, name: &str) {
-    harness.get_by_label(name).click();
-    settle(harness);
-}
-
 fn scan(harness: &mut Harness<'static, Window>, command: ScanCommand) {
-    harness.state_mut().shell_mut().workbench_mut().apply(Command::Scan(Box::new(command)));
-    settle(harness);
+    apply(harness, Command::Scan(Box::new(command)));
 }
 
 fn press(harness: &mut Harness<'static, Window>, name: &str, key: Key) {
@@ -157,6 +118,30 @@ fn planes_are_picked_by_mouse_and_keyboard() {
     click(&mut harness, words::TOOL_RECTANGLE);
     press(&mut harness, words::CLOUD, Key::Enter);
     assert_eq!(names(&harness).len(), num_left + 2);
+}
+
+#[test]
+fn a_plane_is_no_region_twice_and_all_angles_can_be_reached() {
+    let mut harness = window_on(parts(9));
+    let scan = examined(&harness);
+    let before = names(&harness);
+    // A point of the largest plane, near its midst.
+    let region = &scan.regions[0];
+    let middle = region.plane.as_ref().expect("a plane").centroid_mm;
+    let from_middle = |idx: &usize| (scan.cloud.point_mm(*idx) - middle).norm();
+    let nearest = region.set.indices().min_by(|a, b| from_middle(a).total_cmp(&from_middle(b))).expect("points");
+    let picked = RegionChoice::Plane(scan.cloud.point_mm(nearest));
+    let num_pairs = before.len() * (before.len() - 1) / 2;
+    assert!(num_pairs > 0);
+    for (second, name) in before.iter().enumerate() {
+        for first in &before[..second] {
+            assert!(harness.query_by_label(&words::angle_label(first, name)).is_some(), "{first}, {name}");
+        }
+    }
+    self::scan(&mut harness, ScanCommand::AddRegion(picked));
+    assert_eq!(names(&harness), before);
+    let said = &workbench(&harness).notices().last().expect("said so").message;
+    assert_eq!(*said, words::region_is_known(&before[0]));
 }
 
 #[test]

@@ -88,8 +88,13 @@ pub fn verification(
 /// they get are free among those there once the edit is made.
 #[must_use]
 pub fn adding_targets_of(session: Session, file_name: &str) -> Edit {
-    let Session { name, target, known, stations, further, .. } = session;
+    let Session { name, target, known, stations, further, sensor, .. } = session;
     let name = if name.trim().is_empty() { target_name_from_file(file_name) } else { name };
-    let own = FurtherTarget { name, target, known, stations, unknown: UnknownFields::new() };
-    Edit::Several(std::iter::once(own).chain(further).map(|target| Edit::AddFurther(Box::new(target))).collect())
+    let own = FurtherTarget { name, target, known, profile_std_mm: None, stations, unknown: UnknownFields::new() };
+    let with_noise = |target: FurtherTarget| {
+        // What that session says of its profiles holds for them there as well.
+        let profile_std_mm = target.profile_std_mm.or(sensor.profile_std_mm);
+        Edit::AddFurther(Box::new(FurtherTarget { profile_std_mm, ..target }))
+    };
+    Edit::Several(std::iter::once(own).chain(further).map(with_noise).collect())
 }

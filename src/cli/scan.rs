@@ -12,6 +12,7 @@ use crate::report::scan_file::scan_file;
 use crate::scan::files::{CloudFormat, read_cloud, write_cloud};
 use crate::scan::{Cloud, PointSet, Region, RoundKind, SegmentOptions, Wanted, plane_regions, region_name, shapes};
 use crate::session::{self, Known, SessionScan};
+use crate::text::verify::matrix_lines;
 use crate::text::workpiece as words;
 use crate::watch::Unwatched;
 
@@ -85,17 +86,17 @@ fn scanned(args: &ScanArgs) -> Result<String, Refusal> {
     let format = args.out.as_deref().map(CloudFormat::of).transpose().map_err(|error| wrong(&error))?;
     let format =
         format.map(|format| if args.ascii && format == CloudFormat::Ply { CloudFormat::PlyText } else { format });
-    let cases = if is_cloud(&args.file) {
+    let (mut text, cases) = if is_cloud(&args.file) {
         let read = read_cloud(&args.file, &mut Unwatched).map_err(|error| wrong(&error))?;
         let name = args.file.display().to_string();
-        vec![Case { name, num_profiles: None, calibration: None, known: Known::default(), cloud: read.cloud }]
+        let known = Known::default();
+        (String::new(), vec![Case { name, num_profiles: None, calibration: None, known, cloud: read.cloud }])
     } else {
         from_session(args)?
     };
-    let mut text = String::new();
     let mut files = Vec::new();
     for case in &cases {
-        let (head, file) = measured(args, case);
+        let (head, file) = measured(args, case)?;
         text.push_str(&head);
         files.push(file);
     }
@@ -120,7 +121,9 @@ fn is_cloud(path: &Path) -> bool {
     matches!(ending.as_str(), "ply" | "csv" | "xyz" | "txt" | "asc" | "pts")
 }
 
-fn from_session(args: &ScanArgs) -> Result<Vec<Case>, Refusal> {
+/// The scans chosen, and what is to be said of the calibration.
+fn from_session(args: &ScanArgs) -> Result<(String, Vec<Case>), Refusal> {
+    let mut notes = String::new();
     let wrong = |reason: String| (EXIT_WRONG_INPUT, reason);
     let session = session::load(&args.file).map_err(|error| wrong(error.to_string()))?;
     let scans = session.scans();
@@ -138,12 +141,22 @@ fn from_session(args: &ScanArgs) -> Result<Vec<Case>, Refusal> {
         return Err(wrong(words::NO_SCAN.to_owned()));
     }
     let calibration = match &args.calibration {
-        Some(path) => read_calibration(path).map_err(|error| wrong(error.to_string()))?,
+        Some(path) => {
+            let read = read_calibration(path).map_err(|error| wrong(error.to_string()))?;
+            // What was no rotation is told, once, before everything that was measured through the nearest.
+            notes.push_str(&if read.check.is_rotation() {
+                String::new()
+            } else {
+                matrix_lines(&read.name, &read.check)
+            });
+            read.named()
+        }
         None => best_calibration(&session, &mut Unwatched)
             .unwrap_or_else(|cancelled| Err(cancelled.to_string()))
             .map_err(|reason| (EXIT_NOTHING_COMPUTED, words::no_calibration(&reason)))?,
     };
-    chosen.into_iter().map(|scan| case_of(scan, &calibration.name, &calibration.flange_from_sensor)).collect()
+    let case = |scan| case_of(scan, &calibration.name, &calibration.flange_from_sensor);
+    Ok((notes, chosen.into_iter().map(case).collect::<Result<_, _>>()?))
 }
 
 /// A part's scans together, and each by itself only where it is the only one.
@@ -164,30 +177,37 @@ fn case_of(
 }
 
 /// What was measured, as text and as JSON.
-fn measured(args: &ScanArgs, case: &Case) -> (String, Value) {
-    let cloud = &case.cloud;
-    let regions = if args.plane.is_empty() {
-        let options = SegmentOptions { tolerance_mm: args.tolerance, ..SegmentOptions::default() };
-        // It is never cancelled.
-        plane_regions(cloud, &options, &mut Unwatched).unwrap_or_default()
-    } else {
-        let region = |(idx, corners): (usize, &[f64])| {
-            let [a, b] = [&corners[..3], &corners[3..]].map(Vec3::from_column_slice);
-            Region::new(cloud, region_name(idx), PointSet::in_box(cloud, a.inf(&b), a.sup(&b)))
-        };
-        args.plane.chunks_exact(6).enumerate().map(region).collect()
-    };
-    let known = &case.known;
+fn measured(args: &ScanArgs, case: &Case) -> Result<(String, Value), Refusal> {
+    let Case { cloud, known, .. } = case;
     let wanted = Wanted {
         teeth: args.teeth || known.pitch_mm.is_some() || known.height_mm.is_some(),
         diameter: known.diameter_mm.is_some(),
         round: args.cylinder.then_some(RoundKind::Cylinder).or_else(|| args.ball.then_some(RoundKind::Ball)),
     };
     let shapes = shapes(cloud, &PointSet::all(cloud), wanted);
+    let regions = if args.plane.is_empty() {
+        let options = SegmentOptions { tolerance_mm: args.tolerance, ..SegmentOptions::default() };
+        // It is never cancelled.
+        plane_regions(cloud, &options, &shapes, &mut Unwatched).unwrap_or_default()
+    } else {
+        let region = |(idx, corners): (usize, &[f64])| {
+            let [a, b] = [&corners[..3], &corners[3..]].map(Vec3::from_column_slice);
+            let set = PointSet::in_box(cloud, a.inf(&b), a.sup(&b));
+            if set.is_empty() {
+                let empty = words::empty_box(&case.name, corners, cloud.bounds_mm());
+                return Err((EXIT_NOTHING_COMPUTED, empty));
+            }
+            Ok(Region::new(cloud, region_name(idx), set))
+        };
+        args.plane.chunks_exact(6).enumerate().map(region).collect::<Result<_, _>>()?
+    };
     let head = words::scan_head(&case.name, cloud.len(), case.num_profiles, case.calibration.as_deref());
-    let text = head + &words::planes_table(&regions, known) + &words::shapes_table(&shapes, known);
+    let planes = words::planes_table(&regions, known);
+    let others = words::shapes_table(&shapes, known);
+    // The diameter of a round part is what it was scanned for.
+    let text = head + &if matches!(shapes.round, Some(Ok(_))) { others + &planes } else { planes + &others };
     let file = scan_file(&case.name, case.calibration.as_deref(), cloud, &regions, &shapes, known);
-    (text, file)
+    Ok((text, file))
 }
 
 fn finite(text: &str) -> Result<f64, String> {

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use crate::app::verification::{adding_targets_of, verification};
 use crate::calibrate::MethodResult;
-use crate::report::calibration_file::read_matrix;
+use crate::report::calibration_file::read_calibration;
 use crate::report::digits::{fixed, signed};
 use crate::report::verification_file::{Checked, verification_file};
 use crate::session::{self, Session, measure};
@@ -14,6 +14,7 @@ use crate::text::verify as words;
 use crate::verify::{Calibration, Distances, Measurement, Origin, Stability, TargetEvidence, Verification};
 use crate::watch::Unwatched;
 
+use super::solve::six_numbers;
 use super::{EXIT_NOTHING_COMPUTED, EXIT_WRONG_INPUT, fail};
 
 /// Arguments of `handeye verify`.
@@ -55,7 +56,9 @@ fn verified(args: &VerifyArgs) -> Result<String, Refusal> {
             let results = results.map_err(|cancelled| nothing(cancelled.to_string()))?;
             Some((problem, results))
         }
-        Err(refusal) if session.further.is_empty() => return Err(nothing(refusal.to_string())),
+        Err(refusal) if session.further.is_empty() && given.is_empty() => {
+            return Err(nothing(words::nothing_own(&refusal.to_string(), !session.scans().is_empty())));
+        }
         Err(_) => None,
     };
     let solved = own.as_ref().map(|(problem, results)| (problem, results.as_slice()));
@@ -68,7 +71,7 @@ fn verified(args: &VerifyArgs) -> Result<String, Refusal> {
     if args.json {
         return Ok(format!("{:#}\n", verification_file(&session, &found, &checked)));
     }
-    Ok(tables(&session, &found, &checked))
+    Ok(tables(args, &session, &found, &checked))
 }
 
 fn first_reason(results: &[MethodResult]) -> String {
@@ -97,58 +100,94 @@ fn with_further(args: &VerifyArgs) -> Result<Session, Refusal> {
 fn given(args: &VerifyArgs) -> Result<(Vec<Calibration>, Vec<Checked>), Refusal> {
     let (mut calibrations, mut checked) = (Vec::new(), Vec::new());
     for path in &args.calibrations {
-        let (name, matrix) = read_matrix(path).map_err(|error| (EXIT_WRONG_INPUT, error.to_string()))?;
-        let check = matrix.check();
-        let flange_from_sensor = matrix
-            .nearest()
-            .ok_or_else(|| (EXIT_WRONG_INPUT, format!("{}: {}", path.display(), words::matrix_verdict(&check))))?;
-        let origin = Origin::Given { name: name.clone() };
+        let read = read_calibration(path).map_err(|error| (EXIT_WRONG_INPUT, error.to_string()))?;
+        let origin = Origin::Given { name: read.name.clone(), is_nearest: !read.check.is_rotation() };
+        let flange_from_sensor = read.flange_from_sensor;
         calibrations.push(Calibration { origin, flange_from_sensor, workspace_point_std_mm: None });
-        checked.push((name, check));
+        checked.push((read.name, read.check));
     }
     Ok((calibrations, checked))
 }
 
-/// Everything for a terminal 100 columns wide.
+/// Everything for a terminal 100 columns wide, if names are short enough.
 ///
 /// Writing to a string does not fail, hence the `ok()`s.
-fn tables(session: &Session, found: &Verification, checked: &[Checked]) -> String {
+fn tables(args: &VerifyArgs, session: &Session, found: &Verification, checked: &[Checked]) -> String {
     let mut out = words::verify_head(&session.name, found.calibrations.len(), found.targets.len());
     for (name, check) in checked {
-        writeln!(out, "\n{name}: {}", words::matrix_verdict(check)).ok();
-        if !check.is_rotation() {
-            writeln!(out, "  {}", words::defect_line(check)).ok();
-        }
-        if let Some(suspect) = &check.suspect {
-            writeln!(out, "  {}", words::suspect_sentence(suspect)).ok();
-        }
+        out.push('\n');
+        out.push_str(&words::matrix_lines(name, check));
+    }
+    for target in &found.targets {
+        refused(&mut out, target);
     }
     let names: Vec<String> =
         found.calibrations.iter().map(|calibration| words::calibration_name(&calibration.origin, found)).collect();
     for (target_idx, target) in found.targets.iter().enumerate() {
-        let own: Vec<bool> =
-            found.calibrations.iter().map(|calibration| calibration.origin.has_seen(target_idx)).collect();
-        distances(&mut out, target, &names, &own);
-        stability(&mut out, target, &names, &own);
+        let own: Vec<bool> = (0..names.len()).map(|idx| found.has_seen(idx, target_idx)).collect();
+        let labels = Labels { names: &names, own: &own };
+        distances(&mut out, target, labels);
+        stability(&mut out, target, labels);
     }
-    cross_table(&mut out, found, &names);
+    if !found.targets.is_empty() {
+        cross_table(&mut out, found, &names);
+        joint(&mut out, session, found);
+        out.push_str(words::OWN_DATA_FOOT);
+    }
+    if !session.scans().is_empty() {
+        out.push_str(&words::scans_elsewhere(&args.file.display().to_string()));
+    }
     out
 }
 
-/// A name cut to a column, with a star if the data are its own.
-fn label(name: &str, is_own: bool) -> String {
-    const WIDTH: usize = 32;
-    let short: String = name.chars().take(WIDTH - 2).collect();
-    format!("{:<WIDTH$}", if is_own { format!("{short} *") } else { short })
+/// Which profiles count for nothing, and why: the first of them.
+fn refused(out: &mut String, target: &TargetEvidence) {
+    const MOST: usize = 3;
+    let refused: Vec<_> = target.refused().collect();
+    if refused.is_empty() {
+        return;
+    }
+    writeln!(out, "\n{}", words::refused(&target.name, refused.len(), target.num_captures())).ok();
+    for capture in refused.iter().take(MOST) {
+        writeln!(out, "  {}", words::refused_capture(capture.station, &capture.refusal.to_string())).ok();
+    }
+    if refused.len() > MOST {
+        writeln!(out, "  {}", words::more_refused(refused.len() - MOST)).ok();
+    }
 }
 
-fn distances(out: &mut String, target: &TargetEvidence, names: &[String], own: &[bool]) {
+/// Calibrations at the head of rows, and which of them were computed from the target at hand.
+#[derive(Clone, Copy)]
+struct Labels<'a> {
+    names: &'a [String],
+    own: &'a [bool],
+}
+
+impl Labels<'_> {
+    /// The name, with a star if the data are its own; cut to a column.
+    fn label(self, idx: usize, width: usize) -> String {
+        let short: String = self.names[idx].chars().take(width - 3).collect();
+        let star = if self.own[idx] { " *" } else { "" };
+        format!("{:<width$}", short + star)
+    }
+
+    fn width(self) -> usize {
+        label_width(self.names)
+    }
+}
+
+/// Of the column of names: as wide as the longest of them, within reason.
+fn label_width(names: &[String]) -> usize {
+    names.iter().map(|name| name.chars().count() + 3).max().unwrap_or(0).clamp(32, 60)
+}
+
+fn distances(out: &mut String, target: &TargetEvidence, labels: Labels<'_>) {
     let rows: Vec<(usize, &Distances)> =
         target.rows.iter().enumerate().filter_map(|(idx, row)| Some((idx, row.as_ref().ok()?.distances()?))).collect();
     let Some((_, first)) = rows.first() else { return };
-    out.push_str(&words::distances_head(&target.name, first.points.len()));
+    out.push_str(&words::distances_head(&target.name, first.points.len(), labels.width()));
     for (idx, distances) in rows {
-        let mut line = label(&names[idx], own[idx]);
+        let mut line = labels.label(idx, labels.width());
         for figures in [&distances.to_line, &distances.to_plane] {
             for value in [figures.mean_mm, figures.std_mm, figures.max_mm] {
                 write!(line, "{:>8}", fixed(value, 3)).ok();
@@ -160,7 +199,9 @@ fn distances(out: &mut String, target: &TargetEvidence, names: &[String], own: &
     }
 }
 
-fn stability(out: &mut String, target: &TargetEvidence, names: &[String], own: &[bool]) {
+fn stability(out: &mut String, target: &TargetEvidence, labels: Labels<'_>) {
+    /// Three columns of figures.
+    const PAIR_WIDTH: usize = 34;
     let seen: Vec<(usize, &[Measurement], &Stability)> = target
         .rows
         .iter()
@@ -174,7 +215,7 @@ fn stability(out: &mut String, target: &TargetEvidence, names: &[String], own: &
     out.push_str(&words::stability_head(&target.name, first.is_touched));
     // Two calibrations beside each other fill a terminal, as in the paper.
     for pair in seen.chunks(2) {
-        let head: String = pair.iter().map(|(idx, ..)| label(&names[*idx], own[*idx]) + "  ").collect();
+        let head: String = pair.iter().map(|(idx, ..)| labels.label(*idx, PAIR_WIDTH)).collect();
         writeln!(out, "\n{:<14}{}", "", head.trim_end()).ok();
         let axes = format!("{:>10}{:>10}{:>10}    ", "Δx", "Δy", "Δz");
         writeln!(out, "{:<10}{}", words::NUMBER, axes.repeat(pair.len()).trim_end()).ok();
@@ -199,24 +240,26 @@ fn three(vector: crate::geometry::Vec3, text: fn(f64, usize) -> String) -> [Stri
 
 fn cross_table(out: &mut String, found: &Verification, names: &[String]) {
     out.push_str(words::CROSS_TABLE_HEAD);
-    let mut head = format!("{:<32}", "");
-    for target in &found.targets {
-        write!(head, "{:>20}", target.name.chars().take(19).collect::<String>()).ok();
+    let width = label_width(names);
+    let widths: Vec<usize> =
+        found.targets.iter().map(|target| (target.name.chars().count() + 2).clamp(20, 40)).collect();
+    let mut head = format!("{:<width$}", "");
+    for (target, width) in found.targets.iter().zip(&widths) {
+        write!(head, "{:>width$}", target.name.chars().take(width - 1).collect::<String>()).ok();
     }
     writeln!(out, "{head}").ok();
     for (idx, name) in names.iter().enumerate() {
-        let mut line = label(name, false);
-        for target in 0..found.targets.len() {
-            let is_own = found.calibrations[idx].origin.has_seen(target);
+        let mut line = format!("{:<width$}", name.chars().take(width - 1).collect::<String>());
+        for (target, width) in widths.iter().enumerate() {
             let cell = match found.cell(idx, target) {
                 Some(Ok(evaluation)) => {
                     let figures = &evaluation.figures;
-                    let star = if is_own { " *" } else { "  " };
+                    let star = if found.has_seen(idx, target) { " *" } else { "  " };
                     format!("{} / {}{star}", fixed(figures.rms_mm, 3), fixed(figures.max_mm, 3))
                 }
                 _ => "–  ".to_owned(),
             };
-            write!(line, "{cell:>20}").ok();
+            write!(line, "{cell:>width$}").ok();
         }
         writeln!(out, "{}", line.trim_end()).ok();
     }
@@ -225,5 +268,25 @@ fn cross_table(out: &mut String, found: &Verification, names: &[String]) {
         Some(format!("{}: {refusal}\n", target.name))
     });
     out.push_str(&refusals.collect::<String>());
-    out.push_str(words::OWN_DATA_FOOT);
+}
+
+/// The calibration from all targets, and what each of them says of it.
+fn joint(out: &mut String, session: &Session, found: &Verification) {
+    let Some(joint) = &found.joint else { return };
+    let solution = match &joint.outcome {
+        Ok(solution) => solution,
+        Err(error) => return out.push_str(&words::no_joint(&error.to_string())),
+    };
+    out.push_str(words::JOINT_HEAD);
+    six_numbers(out, session, &solution.flange_from_sensor, Some(&solution.uncertainty));
+    let names = || joint.target_idxs.iter().map(|idx| found.targets.get(*idx).map_or("", |target| &target.name));
+    let width = names().map(|name| name.chars().count() + 4).max().unwrap_or(0).max(16);
+    out.push_str(&words::joint_targets_head(width));
+    for (name, target) in names().zip(&solution.targets) {
+        let alone = target.alone.uncertainty.as_ref().map_or(f64::NAN, |known| known.workspace_point_std_mm);
+        let together = solution.uncertainty.workspace_point_std_mm;
+        let line = words::joint_target(name, width, [alone, together, target.moved_mm], target.p_value);
+        writeln!(out, "{line}").ok();
+    }
+    writeln!(out, "{}", words::JOINT_HINT).ok();
 }

@@ -8,9 +8,10 @@ use serde_json::Value;
 use thiserror::Error;
 
 use crate::geometry::{Flange, Mat3, Sensor, Transform, Vec3};
-use crate::verify::{GivenMatrix, MatrixRefusal, parse_matrix};
+use crate::text::verify::nearest_of;
+use crate::verify::{GivenMatrix, MatrixCheck, MatrixRefusal, parse_matrix};
 
-use super::result_file::FORMAT;
+use super::{result_file, verification_file};
 
 /// No result file is larger.
 const LIMIT_BYTES: u64 = 256 << 20;
@@ -54,17 +55,15 @@ pub enum CalibrationFileError {
         /// Why.
         refusal: MatrixRefusal,
     },
-    /// A matrix that is no calibration.
+    /// A matrix that has lost a dimension.
     #[error(
-        "{}: found a matrix whose left part is no rotation (RᵀR is off 1 by up to {defect:.3}, the determinant is \
-         {determinant:.3}), expected perpendicular columns of length 1; mend the misprint, or give the calibration as a result file",
+        "{}: found a matrix to which no rotation is nearest (its determinant is {determinant:.3}), expected perpendicular columns of \
+         length 1; mend the misprint, or give the calibration as a result file",
         file.display()
     )]
     NoRotation {
         /// The file.
         file: PathBuf,
-        /// The largest element of `RᵀR − 1`.
-        defect: f64,
         /// The determinant.
         determinant: f64,
     },
@@ -79,20 +78,41 @@ pub struct NamedCalibration {
     pub flange_from_sensor: Transform<Flange, Sensor>,
 }
 
-/// Reads a calibration. Of a result file the answer is taken, or the first method that has a result.
+/// A calibration from a file, and whether what stood there is one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReadCalibration {
+    /// The file's name, and the method in it.
+    pub name: String,
+    /// What was found when the matrix was looked at.
+    pub check: MatrixCheck,
+    /// It, or the nearest to a matrix that is no rotation.
+    pub flange_from_sensor: Transform<Flange, Sensor>,
+}
+
+impl ReadCalibration {
+    /// With a name that says so where it is not what stood in the file.
+    #[must_use]
+    pub fn named(self) -> NamedCalibration {
+        let name = if self.check.is_rotation() { self.name } else { nearest_of(&self.name) };
+        NamedCalibration { name, flange_from_sensor: self.flange_from_sensor }
+    }
+}
+
+/// Reads a calibration. Of a result file the answer is taken, or the first method that has a result; of a verification file the
+/// calibration from all targets, or the first; of a matrix that is no rotation the nearest.
 ///
 /// # Errors
 /// [`CalibrationFileError`].
-pub fn read_calibration(path: &Path) -> Result<NamedCalibration, CalibrationFileError> {
+pub fn read_calibration(path: &Path) -> Result<ReadCalibration, CalibrationFileError> {
     let (name, matrix) = read_matrix(path)?;
-    Ok(NamedCalibration { name, flange_from_sensor: checked(path, &matrix)? })
+    let check = matrix.check();
+    match matrix.nearest() {
+        Some(flange_from_sensor) => Ok(ReadCalibration { name, check, flange_from_sensor }),
+        None => Err(CalibrationFileError::NoRotation { file: path.to_owned(), determinant: check.determinant }),
+    }
 }
 
-/// The same as a matrix that need not be a rotation, with what it is called.
-///
-/// # Errors
-/// [`CalibrationFileError`], but never [`CalibrationFileError::NoRotation`].
-pub fn read_matrix(path: &Path) -> Result<(String, GivenMatrix), CalibrationFileError> {
+fn read_matrix(path: &Path) -> Result<(String, GivenMatrix), CalibrationFileError> {
     let unreadable = |problem| CalibrationFileError::Unreadable { file: path.to_owned(), problem };
     let file_name =
         path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned());
@@ -110,15 +130,6 @@ pub fn read_matrix(path: &Path) -> Result<(String, GivenMatrix), CalibrationFile
     Ok((file_name, matrix))
 }
 
-fn checked(path: &Path, matrix: &GivenMatrix) -> Result<Transform<Flange, Sensor>, CalibrationFileError> {
-    let check = matrix.check();
-    matrix.nearest().filter(|_| check.is_rotation()).ok_or(CalibrationFileError::NoRotation {
-        file: path.to_owned(),
-        defect: check.defect,
-        determinant: check.determinant,
-    })
-}
-
 fn from_result(path: &Path, value: &Value) -> Result<(String, GivenMatrix), CalibrationFileError> {
     let invalid = |at: &str, found: &Value, expected| CalibrationFileError::Invalid {
         file: path.to_owned(),
@@ -126,23 +137,43 @@ fn from_result(path: &Path, value: &Value) -> Result<(String, GivenMatrix), Cali
         found: short(found),
         expected,
     };
-    if value["format"] != FORMAT {
-        return Err(invalid("format", &value["format"], "\"handeye-result\", as `handeye solve --json` writes it"));
-    }
-    let methods = value["methods"].as_array().map(Vec::as_slice).unwrap_or_default();
-    let is_ok = |entry: &&Value| entry["status"] == "ok";
-    let answer = methods.iter().filter(is_ok).find(|entry| entry["method"] == value["answer"]);
-    let Some(entry) = answer.or_else(|| methods.iter().find(is_ok)) else {
-        return Err(invalid("methods", &value["methods"], "at least one method with a result"));
+    let (list, entry, name) = match value["format"].as_str() {
+        Some(result_file::FORMAT) => ("methods", answer_of(value), "method"),
+        Some(verification_file::FORMAT) => ("calibrations", best_of(value), "name"),
+        _ => {
+            let expected = "\"handeye-result\" or \"handeye-verification\", as `handeye solve --json` and `handeye verify --json` write them";
+            return Err(invalid("format", &value["format"], expected));
+        }
+    };
+    let Some(entry) = entry else {
+        return Err(invalid(list, &value[list], "at least one method with a result"));
     };
     let calibration = ["flange_from_sensor", "base_from_sensor"].iter().find_map(|name| entry.get(name));
     let rows = calibration.and_then(|calibration| matrix_of(&calibration["matrix"]));
     let Some(matrix) = rows else {
         let found = calibration.unwrap_or(&Value::Null);
-        return Err(invalid("methods[].flange_from_sensor", found, "an object with a 4 × 4 matrix"));
+        return Err(invalid(&format!("{list}[].flange_from_sensor"), found, "an object with a 4 × 4 matrix"));
     };
-    let method = entry["method"].as_str().unwrap_or("?").to_owned();
-    Ok((method, matrix))
+    Ok((entry[name].as_str().unwrap_or("?").to_owned(), matrix))
+}
+
+fn list<'a>(value: &'a Value, name: &str) -> &'a [Value] {
+    value[name].as_array().map(Vec::as_slice).unwrap_or_default()
+}
+
+/// The answer of a result file, or the first method that has a result.
+fn answer_of(file: &Value) -> Option<&Value> {
+    let is_ok = |entry: &&Value| entry["status"] == "ok";
+    let answer = list(file, "methods").iter().filter(is_ok).find(|entry| entry["method"] == file["answer"]);
+    answer.or_else(|| list(file, "methods").iter().find(is_ok))
+}
+
+/// The calibration from all targets of a verification file; without it the last of its first target, which is the one to use.
+fn best_of(file: &Value) -> Option<&Value> {
+    let calibrations = list(file, "calibrations");
+    let joint = calibrations.iter().find(|calibration| calibration["origin"]["kind"] == "joint");
+    let first = &calibrations.first()?["origin"]["target"];
+    joint.or_else(|| calibrations.iter().rfind(|calibration| calibration["origin"]["target"] == *first))
 }
 
 fn matrix_of(value: &Value) -> Option<GivenMatrix> {

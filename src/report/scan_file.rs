@@ -78,6 +78,7 @@ fn plane_entry(fit: &PlaneFit) -> Value {
         "points": fit.num_points,
         "used": fit.num_used,
         "profiles": fit.num_profiles,
+        "is_std_from_profiles": fit.is_known_from_profiles(),
     })
 }
 

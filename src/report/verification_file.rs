@@ -8,7 +8,7 @@ use crate::session::Session;
 use crate::text::verify::{calibration_name, edge_letter};
 use crate::verify::{
     Calibration, Distances, Evaluation, Figures, Histogram, Joint, MatrixCheck, Measurement, NotEvaluated, Origin,
-    Seen, Stability, TargetEvidence, Verification,
+    Seen, Stability, Suspect, TargetEvidence, Verification,
 };
 
 use super::diagnosis_entry::vector;
@@ -83,18 +83,21 @@ fn calibration_entry(
         Origin::Joint { target_idxs } => {
             json!({ "kind": "joint", "targets": target_idxs.iter().map(target).collect::<Vec<_>>() })
         }
-        Origin::Given { .. } => json!({ "kind": "given" }),
+        Origin::Given { is_nearest, .. } => json!({ "kind": "given", "is_nearest_rotation": is_nearest }),
     };
     let mut entry = json!({ "name": name, "origin": origin });
     entry[sensor] = transform(&calibration.flange_from_sensor);
     entry["workspace_point_std_mm"] = json!(calibration.workspace_point_std_mm);
-    if let Some((_, check)) = checked.iter().find(|(of, _)| *of == name) {
+    if let Origin::Given { name, .. } = &calibration.origin
+        && let Some((_, check)) = checked.iter().find(|(of, _)| of == name)
+    {
         entry["matrix_check"] = check_entry(check);
     }
     entry
 }
 
 fn check_entry(check: &MatrixCheck) -> Value {
+    let suspects: Vec<Value> = check.suspects.iter().map(suspect_entry).collect();
     json!({
         "is_rotation": check.is_rotation(),
         "defect": check.defect,
@@ -103,12 +106,18 @@ fn check_entry(check: &MatrixCheck) -> Value {
         "dot_products": check.dot_products,
         "determinant": check.determinant,
         "to_nearest_deg": check.angle_rad.map(f64::to_degrees),
-        "suspect": check.suspect.map(|suspect| json!({
-            "row": suspect.row + 1,
-            "column": suspect.column + 1,
-            "found": suspect.found,
-            "likely": suspect.likely,
-        })),
+        "suspect": suspects.first(),
+        "suspects": suspects,
+    })
+}
+
+fn suspect_entry(suspect: &Suspect) -> Value {
+    json!({
+        "row": suspect.row + 1,
+        "column": suspect.column + 1,
+        "found": suspect.found,
+        "likely": suspect.likely,
+        "defect_then": suspect.defect_then,
     })
 }
 
@@ -118,18 +127,27 @@ fn target_entry(target_idx: usize, target: &TargetEvidence, verification: &Verif
         Problem::Point(_) => "point",
         Problem::Plate(_) => "right-angle-plate",
     };
-    let rows = target.rows.iter().zip(&verification.calibrations);
+    let rows = target.rows.iter().zip(&verification.calibrations).enumerate();
     let results: Vec<Value> = rows
-        .map(|(row, calibration)| {
+        .map(|(idx, (row, calibration))| {
             let mut entry = json!({
                 "calibration": calibration_name(&calibration.origin, verification),
-                "own_data": calibration.origin.has_seen(target_idx),
+                "own_data": verification.has_seen(idx, target_idx),
             });
             outcome(&mut entry, row);
             entry
         })
         .collect();
-    json!({ "name": target.name, "kind": kind, "is_further": target.further_idx.is_some(), "results": results })
+    let refused = target.refused().map(|refused| {
+        json!({ "station": refused.station, "capture": refused.capture_idx + 1, "reason": refused.refusal.to_string() })
+    });
+    json!({
+        "name": target.name,
+        "kind": kind,
+        "is_further": target.further_idx.is_some(),
+        "refused": refused.collect::<Vec<_>>(),
+        "results": results,
+    })
 }
 
 fn outcome(entry: &mut Value, row: &Result<Evaluation, NotEvaluated>) {

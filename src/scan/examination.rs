@@ -1,10 +1,11 @@
 //! Everything that is asked of a scan, together.
 
+use crate::geometry::Vec3;
 use crate::watch::{Cancelled, Watch};
 
 use super::{
     Cloud, NUM_DRAWN, PlaneFit, PointSet, Round, RoundKind, ScanError, SegmentOptions, Teeth, find_planes, fit_plane,
-    fit_round, measure_teeth, random_distances,
+    fit_round, measure_teeth, random_distances, suitable_tolerance_mm,
 };
 
 /// The same scan, the same points drawn.
@@ -41,12 +42,31 @@ pub fn region_name(idx: usize) -> String {
     if idx < 26 { letter.to_string() } else { format!("{letter}{}", idx / 26) }
 }
 
-/// All planes that a cloud has, named in the order of their size.
+/// All planes that a cloud has, named in the order of their size. Of points on a ball or cylinder that was found there is none:
+/// any part of it is flat to some tolerance.
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn plane_regions(cloud: &Cloud, options: &SegmentOptions, watch: &mut dyn Watch) -> Result<Vec<Region>, Cancelled> {
-    let sets = find_planes(cloud, &PointSet::all(cloud), options, watch)?;
+pub fn plane_regions(
+    cloud: &Cloud,
+    options: &SegmentOptions,
+    found: &Shapes,
+    watch: &mut dyn Watch,
+) -> Result<Vec<Region>, Cancelled> {
+    let all = PointSet::all(cloud);
+    let set = match &found.round {
+        Some(Ok(round)) => {
+            let tolerance_mm = options.tolerance_mm.unwrap_or_else(|| suitable_tolerance_mm(cloud, &all));
+            let is_off = |offset: Vec3| round.distance_mm(offset + cloud.origin_mm()).abs() > tolerance_mm;
+            all.filter(cloud, is_off)
+        }
+        _ => all.clone(),
+    };
+    #[expect(clippy::cast_precision_loss, reason = "counts of points")]
+    if (set.len() as f64) < options.least_share * all.len() as f64 {
+        return Ok(Vec::new());
+    }
+    let sets = find_planes(cloud, &set, options, watch)?;
     Ok(sets.into_iter().enumerate().map(|(idx, set)| Region::new(cloud, region_name(idx), set)).collect())
 }
 

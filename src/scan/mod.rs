@@ -22,7 +22,7 @@ pub use cloud::{Cloud, ScanCapture};
 pub use distances::{NUM_DRAWN, random_distances};
 pub use error::ScanError;
 pub use examination::{Region, Shapes, Wanted, plane_regions, region_name, shapes};
-pub use plane::{Plane, PlaneAngle, PlaneEquation, PlaneFit, angle_between, fit_plane};
+pub use plane::{MIN_PROFILES, Plane, PlaneAngle, PlaneEquation, PlaneFit, angle_between, fit_plane};
 pub use point_set::PointSet;
 pub use round::{Round, RoundKind, fit_round};
 pub use segment::{SegmentOptions, find_planes, grow_plane, suitable_tolerance_mm};

@@ -19,7 +19,7 @@ const SETTLED: f64 = 1e-4;
 /// A plane narrower than this part of its length may as well be a line.
 const MIN_WIDTH: f64 = 1e-3;
 /// Fewer profiles do not tell how they scatter among each other.
-const MIN_PROFILES: usize = 6;
+pub const MIN_PROFILES: usize = 6;
 /// The same fit, the same plane.
 const SEED: u64 = 0x51a7e;
 

@@ -1,5 +1,6 @@
 //! A choice of points: a box, a polygon in a view, or whatever a test says.
 
+use std::collections::HashMap;
 use std::ops::Range;
 
 use crate::geometry::Vec3;
@@ -131,7 +132,7 @@ impl PointSet {
     }
 
     /// The points within a polygon drawn over a view: `right` and `down` are the view's axes in the base, corners are along
-    /// them from the cloud's origin, mm. Points behind others are taken as well.
+    /// them from the cloud's origin, mm. Only what can be seen is taken, not what stands behind it.
     ///
     /// # Errors
     /// [`ScanError::NotAPolygon`].
@@ -139,7 +140,57 @@ impl PointSet {
         if corners_mm.len() < 3 {
             return Err(ScanError::NotAPolygon { found: corners_mm.len() });
         }
-        Ok(Self::all(cloud).filter(cloud, |point| is_inside(corners_mm, [point.dot(&right), point.dot(&down)])))
+        let inside =
+            Self::all(cloud).filter(cloud, |point| is_inside(corners_mm, [point.dot(&right), point.dot(&down)]));
+        Ok(inside.in_front(cloud, right, down))
+    }
+
+    /// The points that are not hidden from a view by others. The view is laid out in cells, each some points wide; in a cell the
+    /// front surface ends where the next point is a cell's width farther away.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_precision_loss,
+        reason = "places among cells, which are few enough"
+    )]
+    fn in_front(&self, cloud: &Cloud, right: Vec3, down: Vec3) -> Self {
+        /// Points in a cell where they are spread evenly: scans are dense along the line and sparse along the path.
+        const IN_CELL: f64 = 16.0;
+        /// Fewer are no surface.
+        const LEAST: usize = 3;
+        let away = right.cross(&down);
+        let bounds =
+            self.indices().map(|idx| cloud.offset_mm(idx)).fold([f64::MAX, f64::MIN, f64::MAX, f64::MIN], |b, p| {
+                let (x, y) = (p.dot(&right), p.dot(&down));
+                [b[0].min(x), b[1].max(x), b[2].min(y), b[3].max(y)]
+            });
+        let area = (bounds[1] - bounds[0]) * (bounds[3] - bounds[2]);
+        if self.len() < 2 * LEAST || area.is_nan() || area <= 0.0 {
+            return self.clone();
+        }
+        let size = (area * IN_CELL / self.len() as f64).sqrt();
+        let cell = |point: Vec3| [right, down].map(|axis| (point.dot(&axis) / size).floor() as i64);
+        let mut depths: HashMap<[i64; 2], Vec<f64>> = HashMap::new();
+        for point in self.indices().map(|idx| cloud.offset_mm(idx)) {
+            depths.entry(cell(point)).or_default().push(point.dot(&away));
+        }
+        let ends: HashMap<[i64; 2], f64> = depths
+            .into_iter()
+            .map(|(cell, mut depths)| {
+                depths.sort_by(f64::total_cmp);
+                let mut surfaces = depths.chunk_by(|near, far| far - near <= size);
+                let front = surfaces.find(|surface| surface.len() >= LEAST).unwrap_or(&depths);
+                (cell, front.last().copied().unwrap_or(f64::INFINITY))
+            })
+            .collect();
+        self.filter(cloud, |point| ends.get(&cell(point)).is_none_or(|end| point.dot(&away) <= *end))
+    }
+
+    /// The part of the points of both sets that is in each of them: 1 for the same points.
+    #[must_use]
+    #[expect(clippy::cast_precision_loss, reason = "counts of points")]
+    pub fn shared_with(&self, other: &Self) -> f64 {
+        let shared = self.len() - self.without(other).len();
+        shared as f64 / (self.len() + other.len() - shared).max(1) as f64
     }
 }
 

@@ -61,6 +61,16 @@ pub struct Round {
     pub num_used: usize,
 }
 
+impl Round {
+    /// How far a point is outside of the surface, mm; negative inside.
+    #[must_use]
+    pub fn distance_mm(&self, point_mm: Vec3) -> f64 {
+        let away = point_mm - self.centre_mm;
+        let across = self.axis.map_or(away, |axis| away - axis * axis.dot(&away));
+        across.norm() - self.diameter_mm / 2.0
+    }
+}
+
 /// Fits a ball or cylinder by least squares, trimmed, to the points of a region that are of it.
 ///
 /// # Errors

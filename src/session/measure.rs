@@ -175,6 +175,7 @@ pub fn measure(session: &Session, previous: Option<&Measured>, watch: &mut dyn W
         .enumerate()
         .map(|(idx, further)| {
             let known = previous.and_then(|measured| measured.further.get(idx));
+            let std_mm = further.profile_std_mm.or(std_mm);
             measure_target(&further.target, &further.stations, std_mm, known, &mut step)
         })
         .collect::<Result<_, _>>()?;
@@ -220,7 +221,8 @@ fn measure_target(
 /// # Errors
 /// [`NothingToSolve`] for a target that no calibration is computed from.
 pub fn problem(session: &Session, measured: &Measured) -> Result<Problem, NothingToSolve> {
-    posed(session, &session.target, &session.stations, &measured.target)
+    let std_mm = session.sensor.profile_std_mm;
+    posed(session, &session.target, std_mm, &session.stations, &measured.target)
 }
 
 /// The same for one of the further targets.
@@ -231,8 +233,9 @@ pub fn problem(session: &Session, measured: &Measured) -> Result<Problem, Nothin
 /// # Panics
 /// If there is no such target.
 pub fn problem_of(session: &Session, measured: &Measured, further_idx: usize) -> Result<Problem, NothingToSolve> {
-    let FurtherTarget { target, stations, .. } = &session.further[further_idx];
-    posed(session, target, stations, &measured.further[further_idx])
+    let FurtherTarget { target, stations, profile_std_mm, .. } = &session.further[further_idx];
+    let std_mm = profile_std_mm.or(session.sensor.profile_std_mm);
+    posed(session, target, std_mm, stations, &measured.further[further_idx])
 }
 
 /// The problem posed by the enabled stations of a ball session.
@@ -252,6 +255,7 @@ pub fn ball_problem(session: &Session, measured: &Measured) -> Result<BallProble
 fn posed(
     session: &Session,
     target: &Target,
+    profile_std_mm: Option<f64>,
     stations: &[Station],
     measured: &MeasuredTarget,
 ) -> Result<Problem, NothingToSolve> {
@@ -278,7 +282,7 @@ fn posed(
         Target::RightAnglePlate => Problem::Plate(PlateProblem {
             mount: session.mount,
             noise,
-            profile_std_mm: session.sensor.profile_std_mm,
+            profile_std_mm,
             reference_distance_mm,
             rough_flange_from_sensor: session.sensor.rough_flange_from_sensor,
             stations: posed.filter_map(|(given, station)| Some(PlateStation { edge: given.edge?, station })).collect(),

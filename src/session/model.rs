@@ -114,6 +114,8 @@ pub struct FurtherTarget {
     pub target: Target,
     /// What is known of it.
     pub known: Known,
+    /// Noise of its profiles, mm, where it was measured with another than the session states.
+    pub profile_std_mm: Option<f64>,
     /// Its stations; their labels are unique among themselves.
     pub stations: Vec<Station>,
     /// Fields unknown to us.

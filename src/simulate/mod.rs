@@ -54,7 +54,14 @@ pub fn simulate(options: &SimulationOptions) -> Session {
     let further = options.further.iter().enumerate().map(|(idx, target)| {
         let options = options.of_further(idx, *target);
         let Measurement { target, known, stations, .. } = measured(&options, &setup.beside(idx + 1));
-        FurtherTarget { name: options.target.name().to_owned(), target, known, stations, unknown: UnknownFields::new() }
+        FurtherTarget {
+            name: options.target.name().to_owned(),
+            target,
+            known,
+            profile_std_mm: None,
+            stations,
+            unknown: UnknownFields::new(),
+        }
     });
     let known = |std: f64| (std > 0.0).then_some(std);
     let mut session = Session {

@@ -15,8 +15,27 @@ pub struct GivenMatrix {
     pub decimals: usize,
 }
 
-/// An element that is most likely misprinted: with another sign or decimal point the matrix is far nearer to a rotation.
+/// What is wrong with the columns of a matrix that is no rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ColumnFault {
+    /// A column that is not of length 1.
+    Length {
+        /// Which, from 0.
+        column: usize,
+        /// How long it is.
+        length: f64,
+    },
+    /// Two columns that are not perpendicular.
+    Angle {
+        /// Which, from 0.
+        columns: [usize; 2],
+        /// The angle between them, rad.
+        angle_rad: f64,
+    },
+}
+
+/// An element that may be misprinted: with another sign or decimal point the matrix is far nearer to a rotation.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Suspect {
     /// Its row, from 0.
     pub row: usize,
@@ -24,10 +43,12 @@ pub struct Suspect {
     pub column: usize,
     /// What stands there.
     pub found: f64,
-    /// What would fit.
+    /// What would fit, to as many digits as the matrix was printed with.
     pub likely: f64,
     /// The defect with that.
     pub defect_then: f64,
+    /// What is wrong all the same.
+    pub faults_then: Vec<ColumnFault>,
 }
 
 /// How far a matrix is from a rotation.
@@ -47,14 +68,20 @@ pub struct MatrixCheck {
     pub nearest: Option<UnitQuaternion<f64>>,
     /// The largest angle between a column and the same column of the nearest rotation, rad.
     pub angle_rad: Option<f64>,
-    /// The element that is most likely misprinted, where one stands out.
-    pub suspect: Option<Suspect>,
+    /// Decimals of the rotation as it was written.
+    pub decimals: usize,
+    /// What is wrong with its columns, beyond rounding.
+    pub faults: Vec<ColumnFault>,
+    /// The elements of which one is most likely misprinted, the likeliest first; none where none stands out.
+    pub suspects: Vec<Suspect>,
 }
 
 /// Files hold some sixteen digits; sums of nine products of them are good to this.
 const LEAST_ROUNDING: f64 = 1e-9;
 /// A misprint is named if mending it makes the defect this many times smaller.
 const STANDS_OUT: f64 = 4.0;
+/// Misprints that leave no more than so many times the least defect are as likely as the one that leaves it.
+const AS_LIKELY: f64 = 1.5;
 
 impl GivenMatrix {
     /// A calibration as a matrix with all its digits.
@@ -72,17 +99,19 @@ impl GivenMatrix {
     pub fn check(&self) -> MatrixCheck {
         let m = &self.rotation;
         let gram = m.transpose() * m;
-        let defect = defect(m);
+        let (defect, rounding) = (defect(m), self.rounding());
         let nearest = so3::nearest_rotation(m);
         MatrixCheck {
             column_norms: [0, 1, 2].map(|column| m.column(column).norm()),
             dot_products: [gram[(0, 1)], gram[(0, 2)], gram[(1, 2)]],
             determinant: m.determinant(),
             defect,
-            rounding: self.rounding(),
+            rounding,
             nearest,
             angle_rad: nearest.map(|nearest| largest_angle(m, &nearest)),
-            suspect: suspect(m, defect, self.rounding()),
+            decimals: self.decimals,
+            faults: column_faults(m, rounding),
+            suspects: if defect > rounding { self.suspects(defect) } else { Vec::new() },
         }
     }
 
@@ -97,6 +126,27 @@ impl GivenMatrix {
     fn rounding(&self) -> f64 {
         let half_unit = 0.5 * 10.0_f64.powi(-i32::try_from(self.decimals).unwrap_or(i32::MAX));
         (2.0 * 3.0_f64.sqrt() * half_unit).max(LEAST_ROUNDING)
+    }
+
+    /// Tries another sign, the decimal point one place to the left, and both, for each element.
+    fn suspects(&self, defect_now: f64) -> Vec<Suspect> {
+        let unit = 10.0_f64.powi(i32::try_from(self.decimals).unwrap_or(i32::MAX));
+        let mut suspects = Vec::new();
+        for (row, column) in (0..3).flat_map(|row| (0..3).map(move |column| (row, column))) {
+            let found = self.rotation[(row, column)];
+            for likely in [-found, found / 10.0, -found / 10.0] {
+                let likely = (likely * unit).round() / unit;
+                let mut mended = self.rotation;
+                mended[(row, column)] = likely;
+                let faults_then = column_faults(&mended, self.rounding());
+                suspects.push(Suspect { row, column, found, likely, defect_then: defect(&mended), faults_then });
+            }
+        }
+        suspects.sort_by(|a, b| a.defect_then.total_cmp(&b.defect_then));
+        let least = suspects.first().map_or(0.0, |best| best.defect_then);
+        let most = (AS_LIKELY * least.max(self.rounding())).min(defect_now / STANDS_OUT);
+        suspects.retain(|suspect| suspect.defect_then <= most);
+        suspects
     }
 }
 
@@ -120,26 +170,20 @@ fn largest_angle(m: &Mat3, nearest: &UnitQuaternion<f64>) -> f64 {
     [0, 1, 2].map(angle).into_iter().fold(0.0, f64::max)
 }
 
-/// Tries another sign, the decimal point one place to the left, and both, for each element.
-fn suspect(m: &Mat3, defect_now: f64, rounding: f64) -> Option<Suspect> {
-    if defect_now <= rounding {
-        return None;
-    }
-    let mut best: Option<Suspect> = None;
-    for row in 0..3 {
-        for column in 0..3 {
-            let found = m[(row, column)];
-            for likely in [-found, found / 10.0, -found / 10.0] {
-                let mut mended = *m;
-                mended[(row, column)] = likely;
-                let defect_then = defect(&mended);
-                if best.is_none_or(|best| defect_then < best.defect_then) {
-                    best = Some(Suspect { row, column, found, likely, defect_then });
-                }
-            }
-        }
-    }
-    best.filter(|best| best.defect_then * STANDS_OUT < defect_now)
+/// The columns that are not of length 1, or not perpendicular, by more than rounding explains; the worst first.
+fn column_faults(m: &Mat3, rounding: f64) -> Vec<ColumnFault> {
+    let gram = m.transpose() * m;
+    let of_length = (0..3).map(|column| {
+        let length = m.column(column).norm();
+        ((gram[(column, column)] - 1.0).abs(), ColumnFault::Length { column, length })
+    });
+    let of_angle = [[0, 1], [0, 2], [1, 2]].into_iter().map(|columns| {
+        let [a, b] = columns.map(|column| m.column(column));
+        (a.dot(&b).abs(), ColumnFault::Angle { columns, angle_rad: a.angle(&b) })
+    });
+    let mut faults: Vec<(f64, ColumnFault)> = of_length.chain(of_angle).filter(|(off, _)| *off > rounding).collect();
+    faults.sort_by(|a, b| b.0.total_cmp(&a.0));
+    faults.into_iter().map(|(_, fault)| fault).collect()
 }
 
 /// How a second calibration of a sensor differs from a first.

@@ -20,6 +20,14 @@ pub enum MatrixRefusal {
         /// Its place, from 1.
         place: usize,
     },
+    /// Decimal commas.
+    #[error(
+        "found \"{found}\" with a comma within the number, needed a decimal point, such as 0.998: replace the commas"
+    )]
+    DecimalComma {
+        /// The first of them.
+        found: String,
+    },
     /// Neither shape.
     #[error("found {found} numbers, needed 12 (3 rows of 4) or 16 (4 rows of 4), row by row")]
     WrongCount {
@@ -51,6 +59,24 @@ const LAST_ROW_WITHIN: f64 = 1e-6;
 /// # Errors
 /// [`MatrixRefusal`], with what was found.
 pub fn parse_matrix(text: &str) -> Result<GivenMatrix, MatrixRefusal> {
+    numbers_of(text).map_err(|refusal| match decimal_comma(text) {
+        Some(found) => MatrixRefusal::DecimalComma { found: shortened(found) },
+        None => refusal,
+    })
+}
+
+/// The first number with a decimal comma, in a text where nothing has a decimal point.
+fn decimal_comma(text: &str) -> Option<&str> {
+    let is_decimal = |word: &&str| {
+        let is_number = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+        let unsigned = word.trim_start_matches(['-', '+', '\u{2212}']);
+        unsigned.split_once(',').is_some_and(|(whole, behind)| is_number(whole) && is_number(behind))
+    };
+    let words = text.split(|c: char| c.is_whitespace() || "[](){};|".contains(c));
+    if text.contains('.') { None } else { words.into_iter().find(is_decimal) }
+}
+
+fn numbers_of(text: &str) -> Result<GivenMatrix, MatrixRefusal> {
     let is_between = |c: char| c.is_whitespace() || "[](){}<>|,;\"'".contains(c);
     let text: &str = text.char_indices().nth(MOST_CHARS).map_or(text, |(end, _)| &text[..end]);
     let tokens: Vec<&str> = text.split(is_between).filter(|token| !token.is_empty()).collect();

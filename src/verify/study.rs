@@ -1,7 +1,8 @@
 //! All calibrations at hand on all targets at hand.
 
 use crate::calibrate::joint::{JointSolution, solve_joint};
-use crate::calibrate::{Method, MethodResult, Problem, SolveError, best_available};
+use crate::calibrate::{Method, MethodResult, Problem, Reading, SolveError, Station, best_available};
+use crate::fit::Refusal;
 use crate::geometry::{Flange, Sensor, Transform, Vec3};
 use crate::watch::{Cancelled, Watch};
 
@@ -47,6 +48,8 @@ pub enum Origin {
     Given {
         /// What the user calls it.
         name: String,
+        /// Whether it was no rotation, and the nearest one is judged in its place.
+        is_nearest: bool,
     },
 }
 
@@ -117,21 +120,47 @@ pub struct Joint {
     pub outcome: Result<JointSolution, SolveError>,
 }
 
+/// Calibrations that differ by less are the same, written down and read again, mm and rad.
+const SAME_MM: f64 = 1e-6;
+const SAME_RAD: f64 = 1e-8;
+
 impl Verification {
+    /// Whether a calibration was computed from a target's data, also where it came back in a file.
+    #[must_use]
+    pub fn has_seen(&self, calibration_idx: usize, target_idx: usize) -> bool {
+        let Some(calibration) = self.calibrations.get(calibration_idx) else { return false };
+        let is_same = |other: &Calibration| {
+            let (a, b) = (&calibration.flange_from_sensor, &other.flange_from_sensor);
+            (a.translation_mm() - b.translation_mm()).norm() < SAME_MM
+                && a.rotation().angle_to(&b.rotation()) < SAME_RAD
+        };
+        let mut computed = self.calibrations.iter().filter(|other| other.origin.has_seen(target_idx));
+        match calibration.origin {
+            Origin::Given { .. } => computed.any(is_same),
+            Origin::Solved { .. } | Origin::Joint { .. } => calibration.origin.has_seen(target_idx),
+        }
+    }
+
     /// A calibration on a target.
     #[must_use]
     pub fn cell(&self, calibration_idx: usize, target_idx: usize) -> Option<&Result<Evaluation, NotEvaluated>> {
         self.targets.get(target_idx)?.rows.get(calibration_idx)
     }
 
+    /// The place of the answer: the best calibration of the first target.
+    #[must_use]
+    pub fn answer_idx(&self) -> Option<usize> {
+        Method::BEST_FIRST.into_iter().find_map(|method| {
+            let origin = Origin::Solved { target_idx: 0, method };
+            self.calibrations.iter().position(|calibration| calibration.origin == origin)
+        })
+    }
+
     /// Whether other targets bear out the answer, the best calibration of the first target: on none of them its error is far
     /// above that of the calibration computed from that very target. `None` without such a target.
     #[must_use]
     pub fn is_borne_out(&self) -> Option<bool> {
-        let best = Method::BEST_FIRST.into_iter().find_map(|method| {
-            let origin = Origin::Solved { target_idx: 0, method };
-            self.calibrations.iter().position(|calibration| calibration.origin == origin)
-        })?;
+        let best = self.answer_idx()?;
         let mut held_out = self.targets.iter().enumerate().skip(1).filter_map(|(target_idx, target)| {
             let rms_mm = |idx: usize| Some(target.rows.get(idx)?.as_ref().ok()?.figures.rms_mm);
             let own = self.calibrations.iter().position(
@@ -155,17 +184,49 @@ impl Verification {
     }
 }
 
-fn points_in_sensor(problem: &Problem) -> Vec<Vec3> {
-    let stations: Vec<&crate::calibrate::Station> = match problem {
+fn stations(problem: &Problem) -> Vec<&Station> {
+    match problem {
         Problem::Ball(ball) | Problem::Point(ball) => ball.stations.iter().collect(),
         Problem::Plate(plate) => plate.stations.iter().map(|at_plate| &at_plate.station).collect(),
-    };
-    let captures = stations.into_iter().flat_map(|station| &station.captures);
+    }
+}
+
+fn points_in_sensor(problem: &Problem) -> Vec<Vec3> {
+    let captures = stations(problem).into_iter().flat_map(|station| &station.captures);
     let seen = captures.filter_map(|capture| match &capture.reading {
-        crate::calibrate::Reading::Arc(arc) => Some(Vec3::new(arc.circle.x_mm, 0.0, arc.circle.z_mm)),
+        Reading::Arc(arc) => Some(Vec3::new(arc.circle.x_mm, 0.0, arc.circle.z_mm)),
         other => other.point_in_sensor_mm(),
     });
     seen.collect()
+}
+
+/// A profile of a target in which nothing of it was found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RefusedCapture<'a> {
+    /// The label of its station.
+    pub station: &'a str,
+    /// Its place in that.
+    pub capture_idx: usize,
+    /// Why.
+    pub refusal: &'a Refusal,
+}
+
+impl TargetEvidence {
+    /// How many captures its stations have, refused ones among them.
+    #[must_use]
+    pub fn num_captures(&self) -> usize {
+        stations(&self.problem).iter().map(|station| station.captures.len()).sum()
+    }
+
+    /// The captures that no calibration is held against, as nothing was found in them.
+    pub fn refused(&self) -> impl Iterator<Item = RefusedCapture<'_>> {
+        stations(&self.problem).into_iter().flat_map(|station| {
+            station.captures.iter().enumerate().filter_map(|(capture_idx, capture)| match &capture.reading {
+                Reading::Refused(refusal) => Some(RefusedCapture { station: &station.label, capture_idx, refusal }),
+                _ => None,
+            })
+        })
+    }
 }
 
 /// The calibrations computed from the targets: of the first one every method's, of the others the best.

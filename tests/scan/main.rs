@@ -271,3 +271,39 @@ fn what_cannot_be_measured_is_refused() {
     assert!(fit_round(&flat, &all, RoundKind::Ball).is_err());
     assert!(fit_round(&flat, &all, RoundKind::Cylinder).is_err());
 }
+
+#[test]
+fn a_rectangle_takes_what_is_seen_and_not_what_is_behind() {
+    // A plate 40 mm above another one that is wider: from above, the half of the lower one that is free is seen.
+    let surfaces = vec![
+        rectangle(Vec3::new(0.0, 0.0, 140.0), Vec3::y() * 60.0, Vec3::x() * 30.0),
+        rectangle(Vec3::new(0.0, 0.0, 100.0), Vec3::y() * 60.0, Vec3::x() * 60.0),
+    ];
+    // Seen obliquely from two sides, so that points are on both where they lie above one another.
+    let middle = Vec3::new(20.0, 5.0, 120.0);
+    let mut captures = Vec::new();
+    for lean in [-0.9, 0.9] {
+        let path = Path::over(middle, middle + Vec3::y() * 50.0, Vec3::new(lean, 0.0, -1.0), Vec3::x());
+        captures.extend(scan(&surfaces, &path, 3));
+    }
+    let cloud = Cloud::from_scan(&captures, &flange_from_sensor()).expect("points");
+    let height =
+        |set: &PointSet, above: bool| set.indices().filter(|idx| (cloud.point_mm(*idx).z > 120.0) == above).count();
+    let corners = |from: [f64; 2], to: [f64; 2]| {
+        let origin = cloud.origin_mm();
+        // Right is x, and down is −y where the view is from above.
+        let at = |x: f64, y: f64| [x - origin.x, -(y - origin.y)];
+        [at(from[0], from[1]), at(to[0], from[1]), at(to[0], to[1]), at(from[0], to[1])]
+    };
+    let drawn = |from, to| PointSet::in_polygon(&cloud, Vec3::x(), -Vec3::y(), &corners(from, to)).expect("a polygon");
+    let all = PointSet::all(&cloud);
+    let in_box = |low, high| height(&PointSet::in_box(&cloud, low, high), false);
+    let hidden = in_box(Vec3::new(3.0, 10.0, 90.0), Vec3::new(27.0, 50.0, 110.0));
+    assert!(hidden > 500, "{hidden} points behind the plate above");
+    let over = drawn([3.0, 10.0], [27.0, 50.0]);
+    assert!(height(&over, true) > 1000 && height(&over, false) * 50 < hidden, "{} of {hidden}", height(&over, false));
+    // Where nothing is above it, it is seen whole.
+    let free = drawn([35.0, 10.0], [55.0, 50.0]);
+    assert_eq!(free.len(), in_box(Vec3::new(35.0, 10.0, 90.0), Vec3::new(55.0, 50.0, 110.0)));
+    assert!(free.len() > 500 && (all.shared_with(&all) - 1.0).abs() < 1e-12);
+}

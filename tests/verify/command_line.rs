@@ -40,6 +40,8 @@ fn the_verification_file_has_the_names_that_programs_rely_on() {
     assert_eq!(kinds, ["solved", "solved", "solved", "joint", "given"]);
     assert_eq!(calibrations[4]["matrix_check"]["is_rotation"], false);
     assert_eq!(calibrations[4]["matrix_check"]["suspect"]["row"], 2);
+    assert_eq!(calibrations[4]["matrix_check"]["suspects"].as_array().map(Vec::len), Some(1));
+    assert_eq!(calibrations[4]["name"], "chen.txt (nearest rotation)");
     let targets = file["targets"].as_array().expect("a list");
     assert_eq!(targets.len(), 2);
     let on_plate = &targets[0]["results"][1];
@@ -77,4 +79,76 @@ fn refusals_say_which_file_and_why() {
     few.stations.truncate(2);
     let few = files.session("few.json", &few);
     refused(&[&few], 3, &["no calibration was computed", "--calibration"]);
+}
+
+/// A file of verification from the arguments.
+fn file_of(args: &[&str]) -> Value {
+    let output = verify(&[args, &["--json"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).expect("JSON")
+}
+
+#[test]
+fn profiles_of_another_session_are_read_with_the_noise_that_it_states() {
+    let files = Files::new();
+    let plate = |seed, profile_std_mm| {
+        let options = SimulationOptions::of(SimulationTarget::Part(PartKind::Plate));
+        simulate(&SimulationOptions { seed, profile_std_mm, num_points: 200, ..options })
+    };
+    let (clean, noisy) = (plate(1, 0.01), plate(2, 0.1));
+    assert_eq!(noisy.sensor.profile_std_mm, Some(0.1));
+    let alone = files.session("noisy.json", &noisy);
+    let first = files.session("clean.json", &clean);
+    let (alone, along) = (file_of(&[&alone]), file_of(&[&first, "--with", &alone]));
+    let count = |file: &Value, target: usize| {
+        file["targets"][target]["results"][0]["error_mm"]["count"].as_u64().expect("a count")
+    };
+    assert_eq!(count(&along, 1), count(&alone, 0), "as many profiles as by itself");
+    assert_eq!(along["targets"][1]["refused"], alone["targets"][0]["refused"]);
+    // Read with a tenth of their noise most of them show no edge, which is said.
+    let mut mistaken = noisy;
+    mistaken.sensor.profile_std_mm = Some(0.01);
+    let mistaken = files.session("mistaken.json", &mistaken);
+    let num_refused = file_of(&[&first, "--with", &mistaken])["targets"][1]["refused"].as_array().map_or(0, Vec::len);
+    assert!(num_refused > 0);
+    let text = String::from_utf8(verify(&[&first, "--with", &mistaken]).stdout).expect("UTF-8");
+    assert!(text.contains(&format!("{num_refused} of 18 profiles were refused")), "{text}");
+}
+
+#[test]
+fn the_calibration_from_all_targets_is_told_and_can_be_given_again() {
+    let files = Files::new();
+    let plate = files.session("plate.json", &simulated(PartKind::Plate, 1));
+    let tip = files.session("tip.json", &simulated(PartKind::Pin, 2));
+    let output = verify(&[&plate, "--with", &tip]);
+    let text = String::from_utf8(output.stdout).expect("UTF-8");
+    let (_, joint) = text.split_once("\nall targets together\n").expect("its section");
+    for fragment in ["flange_from_sensor: x ", " ± ", "by chance", "moved: from where"] {
+        assert!(joint.contains(fragment), "{fragment:?} is not in\n{joint}");
+    }
+    let found = file_of(&[&plate, "--with", &tip]);
+    let file = files.text("all.json", &found.to_string());
+    let again = file_of(&[&plate, "--with", &tip, "--calibration", &file]);
+    let calibrations = again["calibrations"].as_array().expect("a list");
+    let given = calibrations.last().expect("the one given");
+    assert_eq!(given["name"], "all.json: All targets together");
+    let of_joint = calibrations.iter().find(|calibration| calibration["origin"]["kind"] == "joint").expect("joint");
+    assert_eq!(given["flange_from_sensor"]["translation_mm"], of_joint["flange_from_sensor"]["translation_mm"]);
+    // It was computed from both, wherever it comes from now.
+    let is_own = |target: usize| {
+        let results = again["targets"][target]["results"].as_array().expect("a list");
+        results.last().expect("the one given")["own_data"] == true
+    };
+    assert!(is_own(0) && is_own(1));
+}
+
+#[test]
+fn a_scanned_part_is_shown_the_way_to_its_command() {
+    let files = Files::new();
+    let part = files.session("part.json", &simulated(PartKind::Square, 1));
+    let matrix = files.text("sensor.txt", "1 0 0 5 0 1 0 6 0 0 1 7");
+    let output = verify(&[&part, "--calibration", &matrix]);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(text.contains("handeye scan") && text.contains("part.json"), "{text}");
+    refused(&[&part], 3, &["workpiece", "handeye scan"]);
 }

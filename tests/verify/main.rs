@@ -8,9 +8,10 @@ use handeye::geometry::{Flange, Sensor, Transform, Vec3, so3};
 use handeye::scene::PartKind;
 use handeye::session::{self, measure, samples};
 use handeye::simulate::{SimulationOptions, SimulationTarget, simulate};
+use handeye::text::verify as words;
 use handeye::verify::{
-    Evaluation, GivenMatrix, MatrixDifference, MatrixRefusal, Measurement, NotEvaluated, Origin, Stability, TargetCase,
-    evaluate, parse_matrix, verify,
+    ColumnFault, Evaluation, GivenMatrix, MatrixDifference, MatrixRefusal, Measurement, NotEvaluated, Origin,
+    Stability, TargetCase, evaluate, parse_matrix, verify,
 };
 use handeye::watch::Unwatched;
 
@@ -169,19 +170,29 @@ fn the_papers_printed_matrices_are_no_rotations() {
         assert!(!check.is_rotation());
         assert!(check.dot_products[2].abs() > 0.7, "columns 2 and 3: {:?}", check.dot_products);
     }
-    // −9.441 stands where 0.944 fits: decimal point and sign.
-    let suspect = checks[0].suspect.expect("a misprint");
+    // −9.441 stands where 0.944 fits: decimal point and sign, to the digits of the print.
+    let [suspect] = checks[0].suspects.as_slice() else { panic!("one misprint: {:?}", checks[0].suspects) };
     assert_eq!((suspect.row, suspect.column), (1, 1));
-    assert!((suspect.likely - 0.9441).abs() < 1e-12, "{suspect:?}");
+    assert!((suspect.likely - 0.944).abs() < 1e-12, "{suspect:?}");
     // Columns 1 and 3 are not perpendicular either: −0.056 and 0.006 do not go together.
     assert!((suspect.defect_then - 0.0506).abs() < 1e-3, "{suspect:?}");
+    assert!(suspect.defect_then > 20.0 * checks[0].rounding);
+    let Some(ColumnFault::Angle { columns: [0, 2], angle_rad }) = suspect.faults_then.first() else {
+        panic!("columns 1 and 3: {suspect:?}")
+    };
+    assert!((angle_rad.to_degrees() - 92.9).abs() < 0.1, "{suspect:?}");
     assert!(
         (checks[0].column_norms[1] - (0.021_f64.powi(2) + 9.441_f64.powi(2) + 0.331_f64.powi(2)).sqrt()).abs() < 1e-12
     );
-    // In the other matrix a sign alone: that of −0.901 or that of 0.907, with which it is a rotation to its last digits.
-    let suspect = checks[1].suspect.expect("a misprint");
-    assert!(suspect.row == suspect.column && suspect.row > 0, "{suspect:?}");
-    assert!((suspect.likely + suspect.found).abs() < 1e-12, "{suspect:?}");
+    // In the other matrix a sign alone: that of −0.901 or that of 0.907, and nothing tells which.
+    let suspects = &checks[1].suspects;
+    assert_eq!(suspects.iter().map(|suspect| (suspect.row, suspect.column)).collect::<Vec<_>>(), [(2, 2), (1, 1)]);
+    assert!(suspects.iter().all(|suspect| (suspect.likely + suspect.found).abs() < 1e-12), "{suspects:?}");
+    let sentence = words::suspects_sentence(&checks[1]).expect("a misprint");
+    for fragment in ["Row 3, column 3 is 0.907; with -0.907", ". Or row 2, column 2 is -0.901; with 0.901", "rounding"]
+    {
+        assert!(sentence.contains(fragment), "{fragment:?} is not in {sentence}");
+    }
     assert!(checks.iter().all(|check| check.angle_rad.is_some_and(|angle| angle.to_degrees() > 1.0)));
 }
 
@@ -201,7 +212,7 @@ fn a_true_rotation_passes_with_as_many_digits_as_it_has() {
         let check = parsed.check();
         assert_eq!(parsed.decimals, decimals);
         assert!(check.is_rotation(), "{decimals} decimals: {} > {}", check.defect, check.rounding);
-        assert_eq!(check.suspect, None);
+        assert_eq!((check.suspects, check.faults), (Vec::new(), Vec::new()));
         let difference =
             MatrixDifference::between(&truth, &parsed.nearest().expect("a rotation"), Vec3::new(0.0, 0.0, 170.0));
         assert!(difference.rotation_rad < 10.0_f64.powi(-i32::try_from(decimals).expect("few")));
@@ -225,6 +236,10 @@ fn pasted_matrices_are_refused_with_what_was_found() {
     // Minus signs of papers, bars, MATLAB's semicolons.
     let parsed = parse_matrix("|1 0 0 \u{2212}7.8|; |0 1 0 2e1|; |0 0 1 3|").expect("twelve numbers");
     assert!((parsed.translation_mm - Vec3::new(-7.8, 20.0, 3.0)).norm() < 1e-12);
+    for text in ["0,998 abc", "0,998 -0,021 0,056 -7,806 0,001 0,944 -0,331 123,89 0,006 0,331 0,942 -79,4"] {
+        assert_eq!(refused(text), MatrixRefusal::DecimalComma { found: "0,998".to_owned() });
+    }
+    assert_eq!(refused("1,0,0,x"), MatrixRefusal::NotANumber { found: "x".to_owned(), place: 4 });
     let endless = "1 ".repeat(1_000_000);
     assert!(matches!(refused(&endless), MatrixRefusal::WrongCount { .. }));
 }
@@ -278,10 +293,19 @@ fn every_calibration_meets_every_target() {
     let targets = vec![case("tip", cell.tip_target(16)), case("plate", cell.plate_target())];
     let own = best_available(&targets[0].results).expect("the tip is solved").flange_from_sensor;
     let given = handeye::verify::Calibration {
-        origin: Origin::Given { name: "truth".to_owned() },
+        origin: Origin::Given { name: "truth".to_owned(), is_nearest: false },
         flange_from_sensor: PaperCell::flange_from_sensor(),
         workspace_point_std_mm: None,
     };
+    // What comes back from a file has seen its data all the same.
+    let returned = handeye::verify::Calibration {
+        origin: Origin::Given { name: "tip.json".to_owned(), is_nearest: false },
+        flange_from_sensor: own,
+        ..given.clone()
+    };
+    let seen = verify(targets.clone(), &[returned], &mut Unwatched).expect("not cancelled");
+    let last = seen.calibrations.len() - 1;
+    assert!(seen.has_seen(last, 0) && !seen.has_seen(last, 1));
     let verification = verify(targets, &[given], &mut Unwatched).expect("not cancelled");
     assert_eq!(verification.targets.len(), 2);
     assert!(verification.calibrations[0].origin.has_seen(0) && !verification.calibrations[0].origin.has_seen(1));

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::app::jobs::{JobOutcome, JobWatch, Slot};
 use crate::calibrate::{Method, best_available, solution_of};
 use crate::geometry::{Flange, Sensor, Transform, Vec3};
-use crate::report::calibration_file::{NamedCalibration, read_calibration};
+use crate::report::calibration_file::{NamedCalibration, ReadCalibration, read_calibration};
 use crate::scan::files::{CloudFormat, read_cloud, write_cloud};
 use crate::scan::{
     Cloud, PointSet, Region, SegmentOptions, Shapes, Wanted, grow_plane, plane_regions, region_name, shapes,
@@ -27,6 +27,8 @@ pub enum ScanCalibration {
     Of(Method),
     /// The truth of a simulated session.
     Truth,
+    /// One of those under Verify that no method of the session's own target gave: from all targets, of a further one, pasted.
+    Verified(NamedCalibration),
     /// A result file, or a text file with a matrix.
     File(PathBuf),
 }
@@ -136,6 +138,8 @@ pub struct Scans {
     last_id: u64,
 }
 
+/// Regions that share more than this part of their points are the same.
+const SAME_REGION: f64 = 0.7;
 /// So many changes to the regions can be taken back.
 const MOST_UNDONE: usize = 50;
 
@@ -213,7 +217,10 @@ impl Workbench {
             }
             ScanCommand::OpenPoints(path) => self.open_points(path),
             ScanCommand::FindPlanes => {
-                self.change_regions(|_, cloud, watch| Ok(plane_regions(cloud, &SegmentOptions::default(), watch).ok()));
+                let found = self.scans.examined.as_ref().map(|scan| scan.shapes.clone()).unwrap_or_default();
+                self.change_regions(move |_, cloud, watch| {
+                    Ok(plane_regions(cloud, &SegmentOptions::default(), &found, watch).ok())
+                });
             }
             ScanCommand::AddRegion(choice) => self.change_regions(move |mut regions, cloud, _| {
                 let set = match choice {
@@ -226,6 +233,9 @@ impl Workbench {
                 let set = set.map_err(|error| error.to_string())?;
                 if set.is_empty() {
                     return Err(words::EMPTY_REGION.to_owned());
+                }
+                if let Some(known) = regions.iter().find(|known| known.set.shared_with(&set) > SAME_REGION) {
+                    return Err(words::region_is_known(&known.name));
                 }
                 let is_free = |name: &String| regions.iter().all(|region| region.name != *name);
                 let name = (0..=regions.len()).map(region_name).find(is_free);
@@ -306,10 +316,10 @@ impl Workbench {
                 scan.known.diameter_mm.is_some(),
             );
             let cloud = Arc::new(cloud);
-            let Ok(regions) = plane_regions(&cloud, &SegmentOptions::default(), watch) else {
+            let shapes = shapes(&cloud, &PointSet::all(&cloud), wanted);
+            let Ok(regions) = plane_regions(&cloud, &SegmentOptions::default(), &shapes, watch) else {
                 return Ok(Outcome::Cancelled);
             };
-            let shapes = shapes(&cloud, &PointSet::all(&cloud), wanted);
             Ok(Outcome::Examined(Box::new(ExaminedScan {
                 id,
                 regions_id: id,
@@ -335,7 +345,7 @@ impl Workbench {
         self.scans.working.start("read points", &self.wake, move |watch| {
             let read = read_cloud(&path, watch).map_err(|error| error.to_string())?;
             let cloud = Arc::new(read.cloud);
-            let Ok(regions) = plane_regions(&cloud, &SegmentOptions::default(), watch) else {
+            let Ok(regions) = plane_regions(&cloud, &SegmentOptions::default(), &Shapes::default(), watch) else {
                 return Ok(Outcome::Cancelled);
             };
             Ok(Outcome::Examined(Box::new(ExaminedScan {
@@ -438,7 +448,10 @@ fn calibration_of(
             let flange_from_sensor = truth.ok_or_else(|| words::no_calibration(words::NO_TRUTH))?;
             Ok(NamedCalibration { name: words::TRUTH.to_owned(), flange_from_sensor })
         }
-        ScanCalibration::File(path) => read_calibration(path).map_err(|error| error.to_string()),
+        ScanCalibration::File(path) => {
+            read_calibration(path).map(ReadCalibration::named).map_err(|error| error.to_string())
+        }
+        ScanCalibration::Verified(named) => Ok(named.clone()),
         ScanCalibration::Of(method) => Err(words::no_calibration(&words::no_result_of(*method))),
         ScanCalibration::Best => best_calibration(session, watch)
             .map_err(|cancelled| cancelled.to_string())?

@@ -64,14 +64,15 @@ impl Workbench {
 
     pub(super) fn give_calibration(&mut self, calibration: Calibration) {
         // One of the same name is the same, corrected.
-        self.given.retain(|known| known.origin != calibration.origin);
+        if let Origin::Given { name, .. } = &calibration.origin {
+            self.given.retain(|known| !matches!(&known.origin, Origin::Given { name: of, .. } if of == name));
+        }
         self.given.push(calibration);
         self.start_verifying();
     }
 
     pub(super) fn withdraw_calibration(&mut self, name: &str) {
-        let origin = Origin::Given { name: name.to_owned() };
-        self.given.retain(|known| known.origin != origin);
+        self.given.retain(|known| !matches!(&known.origin, Origin::Given { name: of, .. } if of == name));
         self.start_verifying();
     }
 

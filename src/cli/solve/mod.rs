@@ -25,6 +25,8 @@ mod paper_tables;
 mod stations;
 mod tables;
 
+pub use tables::six_numbers;
+
 /// Arguments of `handeye solve`.
 #[derive(Debug, Args)]
 pub struct SolveArgs {

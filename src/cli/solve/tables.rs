@@ -3,8 +3,9 @@
 use std::fmt::Write as _;
 
 use crate::app::compare::{distance_from_truth, improvement, maximum_error_mm};
-use crate::calibrate::{Method, MethodResult, Mount, Solution, best_available};
+use crate::calibrate::{Method, MethodResult, Mount, Solution, Uncertainty, best_available};
 use crate::diagnose::{Diagnosis, verdict_with};
+use crate::geometry::{Flange, Sensor, Transform};
 use crate::report::digits::{decimals_for, fixed, signed};
 use crate::session::{Session, Target};
 use crate::text;
@@ -140,19 +141,24 @@ fn method_section(out: &mut String, session: &Session, solution: &Solution, diag
 fn verdict_and_calibration(out: &mut String, session: &Session, solution: &Solution, diagnosis: Option<&Diagnosis>) {
     let (verdict, reason) = verdict_with(solution, diagnosis);
     writeln!(out, "  {}", text::verdict_line(verdict, reason, &solution.warnings, session)).ok();
-    calibration(out, session, solution);
+    six_numbers(out, session, &solution.flange_from_sensor, solution.uncertainty.as_ref());
 }
 
-fn calibration(out: &mut String, session: &Session, solution: &Solution) {
-    let name = match solution.mount {
+/// The six numbers of a calibration, each with its σ where that is known.
+pub fn six_numbers(
+    out: &mut String,
+    session: &Session,
+    flange_from_sensor: &Transform<Flange, Sensor>,
+    uncertainty: Option<&Uncertainty>,
+) {
+    let name = match session.mount {
         Mount::OnFlange => "flange_from_sensor",
         Mount::Fixed => "base_from_sensor",
     };
     let convention = session.robot.notation.convention;
-    let translation = solution.flange_from_sensor.translation_mm();
-    let rotation = solution.flange_from_sensor.rotation();
+    let translation = flange_from_sensor.translation_mm();
+    let rotation = flange_from_sensor.rotation();
     let angles = convention.angles_deg_from_rotation(&rotation);
-    let uncertainty = solution.uncertainty.as_ref();
     let translation_std = uncertainty.map(|uncertainty| uncertainty.translation_std_mm);
     write!(out, "  {name}: ").ok();
     for axis in 0..3 {

@@ -163,6 +163,7 @@ fn further_targets_are_looked_at_as_well() {
         name: "tip".to_owned(),
         target: Target::Point,
         known: super::super::Known::default(),
+        profile_std_mm: None,
         stations,
         unknown: UnknownFields::new(),
     };

@@ -1,11 +1,12 @@
 //! Edits of the further targets of a session.
 
+use crate::session::limits;
 use crate::session::model::{FurtherTarget, Known, Session, Target};
 
 use super::EditRefusal;
 use super::labels::{Labels, repeated};
 use super::setup::{check_known, check_target};
-use super::valid::{check_label, check_stations};
+use super::valid::{check_label, check_stations, within};
 
 fn at(session: &mut Session, further_idx: usize) -> Result<&mut FurtherTarget, EditRefusal> {
     session.further.get_mut(further_idx).ok_or(EditRefusal::NoSuchFurther { further_idx })
@@ -22,6 +23,7 @@ pub(super) fn add(session: &mut Session, added: &FurtherTarget) -> Result<(), Ed
     check_label(&added.name)?;
     check_target(&added.target)?;
     check_known(&added.known, &added.target)?;
+    added.profile_std_mm.map_or(Ok(()), |std| within(std, &limits::LENGTH_STD_MM))?;
     let mut added = added.clone();
     added.name = Labels::of(names(session)).claim(&added.name);
     check_stations(&mut added.stations, &added.target, &mut Labels::of_stations(&[]))?;

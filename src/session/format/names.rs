@@ -30,7 +30,7 @@ pub(super) fn word_of<T: Copy + PartialEq>(choices: &[(&'static str, T)], value:
 
 const SESSION: &[&str] =
     &["format", "version", "name", "notes", "robot", "sensor", "target", "mount", "stations", "further", "published"];
-pub(super) const FURTHER: &[&str] = &["name", "target", "stations"];
+pub(super) const FURTHER: &[&str] = &["name", "target", "profile_std_mm", "stations"];
 pub(super) const ROBOT: &[&str] =
     &["model", "pose_convention", "pose_notation", "position_std_mm", "orientation_std_deg"];
 pub(super) const NOTATION: &[&str] = &["orientation", "angle_unit", "length_unit", "flange_from_tcp", "inverse"];

@@ -224,7 +224,8 @@ fn further_target(cursor: &Cursor<'_>, mended: &mut Mended) -> Result<FurtherTar
     let mut unknown = object.unknown(names::FURTHER);
     let (target, known) = target(&object, KINDS_WITH_STATIONS, &mut unknown)?;
     let name = one_line(&object.required("name", ONE_LINE)?)?;
-    Ok(FurtherTarget { name, stations: stations(&object, &target, mended)?, target, known, unknown })
+    let profile_std_mm = object.optional_number("profile_std_mm", &limits::LENGTH_STD_MM)?;
+    Ok(FurtherTarget { name, stations: stations(&object, &target, mended)?, target, known, profile_std_mm, unknown })
 }
 
 /// A name or label of `element` that an earlier element of the list has as well.

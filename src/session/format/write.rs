@@ -148,6 +148,7 @@ fn further(out: &mut Writer, further: &FurtherTarget) {
     out.field("name").text(&further.name);
     out.field("target");
     target(out, &further.target, &further.known, nested(&further.unknown, "target"));
+    out.optional_number("profile_std_mm", further.profile_std_mm);
     out.field("stations");
     out.list(Layout::Lines, &further.stations, station);
     out.unknown(&further.unknown, names::FURTHER);

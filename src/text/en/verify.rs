@@ -2,7 +2,8 @@
 
 use crate::calibrate::Edge;
 use crate::session::Target;
-use crate::verify::{MatrixCheck, Origin, Suspect, Verification};
+use crate::text::digits::{fixed, value};
+use crate::verify::{ColumnFault, MatrixCheck, Origin, Suspect, Verification};
 
 use super::methods::{method_name, method_short_name};
 
@@ -181,6 +182,17 @@ pub fn show_column(name: &str) -> String {
     format!("Columns of {name}")
 }
 
+/// Name of the control that shows a calibration in charts.
+#[must_use]
+pub fn show_in_charts(name: &str) -> String {
+    format!("{name} in charts")
+}
+
+/// What it does.
+pub const SHOW_IN_CHARTS_HINT: &str = "Click to hide it in the charts, or to show it again";
+/// Where all are hidden.
+pub const ALL_HIDDEN: &str = "Choose a calibration above to see its bars.";
+
 /// Name of the control that shows a target's stations.
 #[must_use]
 pub fn show_target(name: &str) -> String {
@@ -296,6 +308,9 @@ pub const MOVED: &str = "moved / mm";
 /// Head of a column.
 pub const P_VALUE: &str = "by chance";
 
+/// Targets whose own calibrations are as far from the joint one as this less often by chance are said to contradict it.
+pub const CONTRADICTED_BELOW: f64 = 0.01;
+
 /// A target whose own calibration is too far from the joint one.
 #[must_use]
 pub fn contradicts(p_value: &str) -> String {
@@ -337,8 +352,15 @@ pub fn calibration_name(origin: &Origin, verification: &Verification) -> String 
             None => method_name(*method).to_owned(),
         },
         Origin::Joint { .. } => "All targets together".to_owned(),
-        Origin::Given { name } => name.clone(),
+        Origin::Given { name, is_nearest: true } => nearest_of(name),
+        Origin::Given { name, is_nearest: false } => name.clone(),
     }
+}
+
+/// A matrix in whose place the nearest rotation is taken.
+#[must_use]
+pub fn nearest_of(name: &str) -> String {
+    format!("{name} (nearest rotation)")
 }
 
 /// The letter of an edge.
@@ -359,23 +381,63 @@ pub fn matrix_verdict(check: &MatrixCheck) -> String {
     if check.nearest.is_none() {
         return "Not a rotation, and none is near it".to_owned();
     }
-    if check.determinant < 0.0 && check.suspect.is_none() {
+    if check.determinant < 0.0 && check.suspects.is_empty() {
         return "Not a rotation but a mirror image: one axis points the other way".to_owned();
     }
     "Not a rotation".to_owned()
 }
 
-/// What is probably misprinted.
+/// Decimals of figures of a matrix: those that it was written with.
 #[must_use]
-pub fn suspect_sentence(suspect: &Suspect) -> String {
-    format!(
-        "Row {}, column {} is {}; with {} there the defect falls to {:.3}",
-        suspect.row + 1,
-        suspect.column + 1,
-        suspect.found,
-        suspect.likely,
-        suspect.defect_then
-    )
+pub fn matrix_decimals(check: &MatrixCheck) -> usize {
+    check.decimals.clamp(2, 6)
+}
+
+/// An angle between columns, as exact as the matrix was written.
+#[must_use]
+pub fn matrix_angle(check: &MatrixCheck, angle_rad: f64) -> String {
+    // A degree is some hundredths.
+    format!("{}°", fixed(angle_rad.to_degrees(), matrix_decimals(check).saturating_sub(2).max(1)))
+}
+
+fn column_fault(check: &MatrixCheck, fault: &ColumnFault) -> String {
+    match fault {
+        ColumnFault::Length { column, length } => {
+            format!("column {} is {} long", column + 1, fixed(*length, matrix_decimals(check)))
+        }
+        ColumnFault::Angle { columns: [a, b], angle_rad } => {
+            format!("columns {} and {} stand at {}", a + 1, b + 1, matrix_angle(check, *angle_rad))
+        }
+    }
+}
+
+/// What is probably misprinted, and what is wrong even then; where several misprints are as likely, all of them.
+#[must_use]
+pub fn suspects_sentence(check: &MatrixCheck) -> Option<String> {
+    let one = |suspect: &Suspect| {
+        let decimals = matrix_decimals(check);
+        let left = match suspect.faults_then.first() {
+            Some(worst) => format!(
+                ", still {:.0} times what rounding explains ({})",
+                suspect.defect_then / check.rounding,
+                column_fault(check, worst)
+            ),
+            None => ", which rounding explains".to_owned(),
+        };
+        format!(
+            "row {}, column {} is {}; with {} there the defect falls to {}{left}",
+            suspect.row + 1,
+            suspect.column + 1,
+            fixed(suspect.found, decimals),
+            fixed(suspect.likely, decimals),
+            fixed(suspect.defect_then, decimals),
+        )
+    };
+    let all: Vec<String> = check.suspects.iter().map(one).collect();
+    let joined = all.join(". Or ");
+    let mut letters = joined.chars();
+    let first = letters.next()?;
+    Some(first.to_uppercase().chain(letters).collect())
 }
 
 /// First line of `handeye verify`.
@@ -392,24 +454,99 @@ pub fn nothing_to_verify(reason: &str) -> String {
     format!("no calibration was computed ({reason}); give one with --calibration")
 }
 
-/// How far a matrix is from a rotation, in one line.
+/// Whether a matrix that was given is a rotation, and what may be wrong with it.
+#[must_use]
+pub fn matrix_lines(name: &str, check: &MatrixCheck) -> String {
+    let found = (!check.is_rotation()).then(|| defect_line(check));
+    let lines: Vec<String> =
+        found.into_iter().chain(suspects_sentence(check)).map(|line| format!("  {line}\n")).collect();
+    format!("{name}: {}\n{}", matrix_verdict(check), lines.concat())
+}
+
+/// Why a session by itself gives nothing to verify; one that holds scans has another command.
+#[must_use]
+pub fn nothing_own(reason: &str, has_scans: bool) -> String {
+    let elsewhere = if has_scans { "; `handeye scan` measures its scans through a calibration" } else { "" };
+    format!("{reason}{elsewhere}")
+}
+
+/// How far a matrix is from a rotation, in two lines.
 #[must_use]
 pub fn defect_line(check: &MatrixCheck) -> String {
     let angle = check.angle_rad.map_or_else(String::new, |angle| {
-        format!("; the nearest rotation, which is judged instead, turns a column by {:.3}°", angle.to_degrees())
+        format!("; the nearest rotation, which is taken instead, turns a column by {}", matrix_angle(check, angle))
     });
+    let faults: Vec<String> = check.faults.iter().map(|fault| column_fault(check, fault)).collect();
+    let decimals = matrix_decimals(check);
     format!(
-        "the largest element of RᵀR − 1 is {:.4}, by rounding at most {:.4}; the determinant is {:.4}{angle}",
-        check.defect, check.rounding, check.determinant
+        "the largest element of RᵀR − 1 is {}, by rounding at most {}; the determinant is {}{angle}\n  {}",
+        fixed(check.defect, decimals),
+        value(check.rounding, Some(check.rounding)),
+        fixed(check.determinant, decimals),
+        faults.join(", ")
     )
 }
 
+/// Where the session holds scans, which are measured by another command.
+#[must_use]
+pub fn scans_elsewhere(file: &str) -> String {
+    format!(
+        "\nthe session holds scans of a workpiece; planes, teeth and diameters through a calibration are measured by\n  \
+         handeye scan {file} --calibration RESULT.json\n"
+    )
+}
+
+/// Profiles of a target in which nothing was found.
+#[must_use]
+pub fn refused(target: &str, num_refused: usize, num_captures: usize) -> String {
+    format!("{target}: {num_refused} of {num_captures} profiles were refused")
+}
+
+/// One of them.
+#[must_use]
+pub fn refused_capture(station: &str, reason: &str) -> String {
+    format!("{station}: {reason}")
+}
+
+/// So many more of them.
+#[must_use]
+pub fn more_refused(count: usize) -> String {
+    format!("and {count} more; --json has them all")
+}
+
+/// Heads the calibration from all targets.
+pub const JOINT_HEAD: &str = "\nall targets together\n";
+
+/// Why there is no calibration from all targets.
+#[must_use]
+pub fn no_joint(reason: &str) -> String {
+    format!("\nall targets together: {reason}\n")
+}
+
+/// Heads the table of what each target says of the joint calibration.
+#[must_use]
+pub fn joint_targets_head(width: usize) -> String {
+    format!("{:<width$}{STD_ALONE:>20}{STD_JOINT:>24}{MOVED:>13}{P_VALUE:>14}\n", "")
+}
+
+/// A row of it.
+#[must_use]
+pub fn joint_target(name: &str, width: usize, lengths_mm: [f64; 3], p_value: f64) -> String {
+    let [alone, together, moved] = lengths_mm.map(|length| fixed(length, 3));
+    let contradiction = if p_value < CONTRADICTED_BELOW { contradicts("") } else { String::new() };
+    format!("  {name:<width$}{alone:>18}{together:>24}{moved:>13}{:>14}{contradiction}", fixed(p_value, 4))
+}
+
+/// What two of its columns mean.
+pub const JOINT_HINT: &str =
+    "moved: from where the target alone puts the workspace point · by chance: how often noise alone moves it so far";
+
 /// Heads the table of distances.
 #[must_use]
-pub fn distances_head(target: &str, points: usize) -> String {
+pub fn distances_head(target: &str, points: usize, width: usize) -> String {
     format!(
         "\ndistances of {points} points from the fitted lines and plane / mm: {target}\n\
-         {:<32}{:>8}{:>8}{:>8}  {:>8}{:>8}{:>8}  {:>9}{:>8}\n",
+         {:<width$}{:>8}{:>8}{:>8}  {:>8}{:>8}{:>8}  {:>9}{:>8}\n",
         "", "line", "sd", "max", "plane", "sd", "max", "angle/°", "gap"
     )
 }

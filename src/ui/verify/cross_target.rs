@@ -21,8 +21,8 @@ const NAME_WIDTH: f32 = 260.0;
 const STATIONS_HEIGHT: f32 = 300.0;
 /// Parts of a row of the joint calibration: target, σ alone, σ together, movement, probability.
 const JOINT_PARTS: [f32; 5] = [0.28, 0.18, 0.18, 0.18, 0.18];
-/// Targets whose own calibrations are as far from the joint one as this less often by chance are said to contradict it.
-const CONTRADICTED_BELOW: f64 = 0.01;
+/// Refused profiles of which the reason is told.
+const MOST_REASONS: usize = 8;
 /// Part of a station's place that its bars take.
 const BARS_PART: f64 = 0.8;
 
@@ -36,11 +36,13 @@ pub(super) struct CrossTargetState {
     /// A name as it is being typed, and of which further target.
     renaming: Option<(usize, String)>,
     is_fitted: bool,
+    /// Calibrations that the bars leave out, by their names.
+    hidden: Vec<String>,
 }
 
 impl Default for CrossTargetState {
     fn default() -> Self {
-        Self { target: 0, shown: None, renaming: None, is_fitted: true }
+        Self { target: 0, shown: None, renaming: None, is_fitted: true, hidden: Vec::new() }
     }
 }
 
@@ -52,7 +54,8 @@ pub(super) fn show(ui: &mut Ui, view: &View<'_>, context: &mut PanelContext<'_>,
         return;
     }
     state.target = state.target.min(targets.len() - 1);
-    let shown_idx = view.marks.iter().position(|mark| Some(&mark.name) == state.shown.as_ref()).unwrap_or(0);
+    let chosen = view.marks.iter().position(|mark| Some(&mark.name) == state.shown.as_ref());
+    let shown_idx = chosen.or_else(|| view.verification.answer_idx()).unwrap_or(0);
     ui.horizontal(|ui| {
         if widgets::primary_button(ui, words::ADD_TARGET).on_hover_text(words::ADD_TARGET_HINT).clicked() {
             context.actions.push(Action::AddFurther);
@@ -61,6 +64,16 @@ pub(super) fn show(ui: &mut Ui, view: &View<'_>, context: &mut PanelContext<'_>,
         tint_legend(ui);
     });
     table(ui, view, shown_idx, state);
+    for target in targets {
+        let num_refused = target.refused().count();
+        if num_refused > 0 {
+            let reasons: Vec<String> = (target.refused().take(MOST_REASONS))
+                .map(|capture| words::refused_capture(capture.station, &capture.refusal.to_string()))
+                .collect();
+            let text = words::refused(&target.name, num_refused, target.num_captures());
+            ui.label(theme::dim(ui, text)).on_hover_text(reasons.join("\n"));
+        }
+    }
     if targets.len() == 1 {
         ui.label(theme::dim(ui, words::ONLY_OWN));
     }
@@ -98,7 +111,7 @@ fn table(ui: &mut Ui, view: &View<'_>, shown_idx: usize, state: &mut CrossTarget
                 head.head(width / 3.0, name, Align2::RIGHT_CENTER);
             }
         }
-        for (idx, (calibration, mark)) in view.verification.calibrations.iter().zip(&view.marks).enumerate() {
+        for (idx, mark) in view.marks.iter().enumerate() {
             ui.push_id(idx, |ui| {
                 let mut cells = RowCells::new(ui, theme::ROW_HEIGHT);
                 if select_cell(&mut cells, NAME_WIDTH, mark, false, idx == shown_idx) {
@@ -107,7 +120,7 @@ fn table(ui: &mut Ui, view: &View<'_>, shown_idx: usize, state: &mut CrossTarget
                 for (target_idx, target) in targets.iter().enumerate() {
                     match target.rows.get(idx) {
                         Some(Ok(evaluation)) => {
-                            let has_seen = calibration.origin.has_seen(target_idx);
+                            let has_seen = view.verification.has_seen(idx, target_idx);
                             figures(&mut cells, width / 3.0, &evaluation.figures, has_seen);
                         }
                         Some(Err(refusal)) => cells.text(width, &refusal.to_string()),
@@ -127,7 +140,9 @@ fn joint(ui: &mut Ui, view: &View<'_>) {
     widgets::card(
         ui,
         words::JOINT,
-        |_| {},
+        |ui| {
+            ui.add(egui::Label::new(theme::dim(ui, words::JOINT_HINT)).truncate()).on_hover_text(words::JOINT_HINT);
+        },
         |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
             let solution = match &joint.outcome {
@@ -153,7 +168,7 @@ fn joint(ui: &mut Ui, view: &View<'_>) {
                     cells.number(*width, value, &widgets::fixed(value, 3), egui::Color32::TRANSPARENT);
                 }
                 let palette = theme::palette(cells.ui());
-                let (words, color) = if target.p_value < CONTRADICTED_BELOW {
+                let (words, color) = if target.p_value < words::CONTRADICTED_BELOW {
                     (words::contradicts(&widgets::fixed(target.p_value, 4)), palette.warn)
                 } else {
                     (widgets::fixed(target.p_value, 2), palette.text)
@@ -217,7 +232,13 @@ fn stations(ui: &mut Ui, view: &View<'_>, shown_idx: usize, state: &mut CrossTar
         STATIONS_HEIGHT,
         |_| {},
         |ui| {
-            super::histogram::legend(ui, &seen.iter().map(|(mark, ..)| *mark).collect::<Vec<_>>());
+            let marks: Vec<&Mark> = seen.iter().map(|(mark, ..)| *mark).collect();
+            state.is_fitted |= super::histogram::choosing_legend(ui, &marks, &mut state.hidden);
+            let seen: Vec<_> = seen.into_iter().filter(|(mark, ..)| !state.hidden.contains(&mark.name)).collect();
+            if seen.is_empty() {
+                widgets::nothing(ui, words::ALL_HIDDEN);
+                return;
+            }
             ui.add_space(6.0);
             let place = |idx: usize| f64::from(u32::try_from(idx).unwrap_or(u32::MAX));
             let mut extent = Extent { x: [-0.6, place(names.len()) - 0.4], y: [0.0, 0.01] };

@@ -29,11 +29,13 @@ pub(super) struct DistancesState {
     shown: Option<String>,
     camera: Camera,
     is_fitted: [bool; 2],
+    /// Calibrations that the histograms leave out, by their names.
+    hidden: Vec<String>,
 }
 
 impl Default for DistancesState {
     fn default() -> Self {
-        Self { plate: 0, shown: None, camera: Camera::default(), is_fitted: [true; 2] }
+        Self { plate: 0, shown: None, camera: Camera::default(), is_fitted: [true; 2], hidden: Vec::new() }
     }
 }
 
@@ -73,6 +75,7 @@ pub(super) fn show(ui: &mut Ui, view: &View<'_>, context: &mut PanelContext<'_>,
     let shown_idx = rows
         .iter()
         .position(|row| Some(&row.mark.name) == state.shown.as_ref() && row.outcome.is_ok())
+        .or_else(|| answer(view, &rows))
         .or_else(|| best(&rows));
     table(ui, &rows, shown_idx, state);
     let Some(shown) = shown_idx.and_then(|idx| rows.get(idx)) else { return };
@@ -83,13 +86,13 @@ pub(super) fn show(ui: &mut Ui, view: &View<'_>, context: &mut PanelContext<'_>,
     let height = left_over.max(2.0 * LEAST_HISTOGRAM_HEIGHT + theme::GAP);
     let each = (height - theme::GAP) / 2.0;
     if width < BESIDE_FROM {
-        histograms(ui, &rows, each, &mut state.is_fitted);
+        histograms(ui, &rows, each, state);
         picture(ui, height, shown.mark, distances, &mut state.camera);
         return;
     }
     let area = Rect::from_min_size(ui.cursor().min, vec2(width, height));
     let (left, right) = area.split_left_right_at_x(area.left() + ((width - theme::GAP) * 0.46).round());
-    histograms(&mut ui.new_child(UiBuilder::new().max_rect(left)), &rows, each, &mut state.is_fitted);
+    histograms(&mut ui.new_child(UiBuilder::new().max_rect(left)), &rows, each, state);
     let right = right.with_min_x(right.left() + theme::GAP);
     let mut beside = ui.new_child(UiBuilder::new().max_rect(right));
     picture(&mut beside, height, shown.mark, distances, &mut state.camera);
@@ -110,16 +113,27 @@ pub(super) fn nothing_yet(ui: &mut Ui, sentence: &str, context: &mut PanelContex
 }
 
 fn rows<'a>(view: &'a View<'_>, target_idx: usize) -> Vec<Row<'a>> {
-    let calibrations = view.verification.calibrations.iter().zip(&view.marks).enumerate();
+    let calibrations = view.marks.iter().enumerate();
     calibrations
-        .filter_map(|(calibration_idx, (calibration, mark))| {
+        .filter_map(|(calibration_idx, mark)| {
             let outcome = match view.verification.cell(calibration_idx, target_idx)? {
                 Ok(evaluation) => Ok(evaluation.distances()?),
                 Err(refusal) => Err(refusal.to_string()),
             };
-            Some(Row { calibration_idx, mark, has_seen: calibration.origin.has_seen(target_idx), outcome })
+            Some(Row {
+                calibration_idx,
+                mark,
+                has_seen: view.verification.has_seen(calibration_idx, target_idx),
+                outcome,
+            })
         })
         .collect()
+}
+
+/// The session's answer, which is what the evidence is about.
+fn answer(view: &View<'_>, rows: &[Row<'_>]) -> Option<usize> {
+    let answer_idx = view.verification.answer_idx()?;
+    rows.iter().position(|row| row.calibration_idx == answer_idx && row.outcome.is_ok())
 }
 
 /// The one with the least RMS to its lines.
@@ -208,27 +222,38 @@ pub(super) fn select_cell(
     response.on_hover_text(if has_seen { words::OWN_DATA_HINT } else { words::OTHER_DATA_HINT }).clicked()
 }
 
-fn histograms(ui: &mut Ui, rows: &[Row<'_>], height: f32, is_fitted: &mut [bool; 2]) {
+fn histograms(ui: &mut Ui, rows: &[Row<'_>], height: f32, state: &mut DistancesState) {
+    let DistancesState { is_fitted, hidden, .. } = state;
+    let mut is_changed = false;
     let to_line: fn(&EdgePoint) -> f64 = |point| point.to_line_mm;
     let to_plane: fn(&EdgePoint) -> f64 = |point| point.to_plane_mm;
     let cards =
         [(words::LINE_HISTOGRAM, words::LINE_AXIS, to_line), (words::PLANE_HISTOGRAM, words::PLANE_AXIS, to_plane)];
     ui.spacing_mut().item_spacing.y = theme::GAP;
-    for ((title, axis, distance), is_fitted) in cards.into_iter().zip(is_fitted) {
+    for ((title, axis, distance), is_fitted) in cards.into_iter().zip(is_fitted.iter_mut()) {
         let seen = rows.iter().filter_map(|row| Some((row.mark, row.outcome.as_ref().ok()?)));
-        let series: Vec<Series<'_>> = seen
-            .map(|(mark, found)| Series { mark, distances_mm: found.points.iter().map(distance).collect() })
-            .collect();
+        let seen: Vec<(&Mark, &Distances)> = seen.map(|(mark, found)| (mark, *found)).collect();
         widgets::card_with_height(
             ui,
             title,
             height,
             |_| {},
             |ui| {
-                histogram::legend(ui, &series.iter().map(|series| series.mark).collect::<Vec<_>>());
-                histogram::show(ui, title, axis, &series, is_fitted);
+                let marks: Vec<&Mark> = seen.iter().map(|(mark, _)| *mark).collect();
+                is_changed |= ui.push_id(title, |ui| histogram::choosing_legend(ui, &marks, hidden)).inner;
+                let series: Vec<Series<'_>> = (seen.iter().filter(|(mark, _)| !hidden.contains(&mark.name)))
+                    .map(|(mark, found)| Series { mark, distances_mm: found.points.iter().map(distance).collect() })
+                    .collect();
+                if series.is_empty() {
+                    widgets::nothing(ui, words::ALL_HIDDEN);
+                } else {
+                    histogram::show(ui, title, axis, &series, is_fitted);
+                }
             },
         );
+    }
+    if is_changed {
+        *is_fitted = [true; 2];
     }
 }
 

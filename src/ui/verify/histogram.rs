@@ -1,6 +1,6 @@
 //! Distances of several calibrations as one histogram, their bars side by side.
 
-use egui::{Id, Rect, Stroke, Ui, pos2};
+use egui::{FontId, Frame, Id, Margin, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 use crate::text::verify as words;
 use crate::ui::charts::{self, Chart, Extent};
@@ -62,4 +62,47 @@ pub fn show(ui: &mut Ui, name: &str, x_title: &str, series: &[Series<'_>], is_fi
 /// The legend above histograms.
 pub fn legend(ui: &mut Ui, marks: &[&Mark]) {
     charts::legend(ui, &marks.iter().map(|mark| mark.legend_entry()).collect::<Vec<_>>());
+}
+
+/// The legend of calibrations, each of which a click hides or shows again: one that is far off would squeeze all others into one
+/// bar. Whether anything was clicked.
+pub fn choosing_legend(ui: &mut Ui, marks: &[&Mark], hidden: &mut Vec<String>) -> bool {
+    const SIGN_WIDTH: f32 = 20.0;
+    let mut is_changed = false;
+    Frame::new().inner_margin(Margin { left: 12, right: 8, top: 6, bottom: 0 }).show(ui, |ui| {
+        ui.spacing_mut().interact_size.y = 18.0;
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing = vec2(10.0, 0.0);
+            for mark in marks {
+                let is_hidden = hidden.contains(&mark.name);
+                let palette = theme::palette(ui);
+                let color = if is_hidden { palette.text_dim.gamma_multiply(0.5) } else { palette.text_dim };
+                let font = FontId::proportional(theme::SMALL_SIZE);
+                let galley = ui.painter().layout_no_wrap(mark.name.clone(), font, color);
+                let (rect, response) = ui.allocate_exact_size(vec2(SIGN_WIDTH + galley.size().x, 18.0), Sense::click());
+                let name = words::show_in_charts(&mark.name);
+                response.widget_info(|| WidgetInfo::selected(Role::Button, true, !is_hidden, &name));
+                if response.hovered() || response.has_focus() {
+                    ui.painter().rect_filled(rect.expand2(vec2(3.0, 0.0)), theme::RADIUS, palette.hovered);
+                }
+                let at = pos2(rect.left() + SIGN_WIDTH, rect.center().y - galley.size().y / 2.0);
+                let width = galley.size().x;
+                ui.painter().galley(at, galley, color);
+                if is_hidden {
+                    ui.painter().hline(at.x..=at.x + width, rect.center().y, Stroke::new(1.0, color));
+                } else {
+                    mark.paint(ui.painter(), rect.left_center() + vec2(SIGN_WIDTH / 2.0 - 2.0, 0.0));
+                }
+                if response.on_hover_text(words::SHOW_IN_CHARTS_HINT).clicked() {
+                    is_changed = true;
+                    if is_hidden {
+                        hidden.retain(|name| *name != mark.name);
+                    } else {
+                        hidden.push(mark.name.clone());
+                    }
+                }
+            }
+        });
+    });
+    is_changed
 }

@@ -16,7 +16,7 @@ use super::panel::{View, name_field};
 /// Room between the two matrices, points.
 const BETWEEN: f32 = 24.0;
 /// Height of the card for a matrix from elsewhere, points.
-const PASTE_HEIGHT: f32 = 268.0;
+const PASTE_HEIGHT: f32 = 316.0;
 /// Rows of its field.
 const FIELD_ROWS: usize = 4;
 
@@ -95,7 +95,7 @@ fn side_by_side(ui: &mut Ui, view: &View<'_>, chosen: &mut [Option<String>; 2]) 
             let shift = [shift.x, shift.y, shift.z].map(|value| widgets::signed(value, 3));
             let sentence = words::matrix_difference(
                 &shift,
-                &widgets::fixed(difference.rotation_rad.to_degrees(), 4),
+                &widgets::fixed(difference.rotation_rad.to_degrees(), 3),
                 &widgets::fixed(difference.at_point_mm, 3),
                 &widgets::fixed(point.z, 0),
             );
@@ -110,7 +110,8 @@ fn matrix_line(row: &mut RowCells<'_>, width: f32, matrix: &Matrix4<f64>, line: 
         let text = match (line, column) {
             (3, _) => widgets::fixed(value, 0),
             (_, 3) => widgets::fixed(value, 3),
-            _ => widgets::fixed(value, 6),
+            // One hundred-thousandth is a micrometre at 100 mm from the flange.
+            _ => widgets::fixed(value, 5),
         };
         let color = theme::palette(row.ui()).text;
         row.word(width / 4.0, &text, color);
@@ -181,14 +182,16 @@ fn entry(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut MatricesState)
                 "" => words::GIVEN_NAME.to_owned(),
                 name => name.to_owned(),
             };
-            let origin = Origin::Given { name };
+            let is_nearest =
+                state.read.as_ref().and_then(|read| read.as_ref().ok()).is_some_and(|(_, check)| !check.is_rotation());
+            let origin = Origin::Given { name, is_nearest };
             let calibration = Calibration { origin, flange_from_sensor, workspace_point_std_mm: None };
             context.commands.push(Command::GiveCalibration(Box::new(calibration)));
         }
     });
     ui.horizontal_wrapped(|ui| {
         for given in context.workbench.given_calibrations() {
-            let Origin::Given { name } = &given.origin else { continue };
+            let Origin::Given { name, .. } = &given.origin else { continue };
             ui.label(name);
             if widgets::symbol_button(ui, "×", &words::withdraw(name)).clicked() {
                 context.commands.push(Command::WithdrawCalibration(name.clone()));
@@ -205,16 +208,17 @@ fn checked(ui: &mut Ui, check: &MatrixCheck) {
         ui.label(RichText::new(sign).color(color));
         ui.label(theme::strong(words::matrix_verdict(check)));
     });
-    if let Some(suspect) = &check.suspect {
-        ui.add(egui::Label::new(RichText::new(words::suspect_sentence(suspect)).color(palette.warn)).wrap());
+    if let Some(suspects) = words::suspects_sentence(check) {
+        ui.add(egui::Label::new(RichText::new(suspects).color(palette.warn)).wrap());
     }
-    let three = |values: [f64; 3]| values.map(|value| widgets::fixed(value, 4)).join("   ");
+    let decimals = words::matrix_decimals(check);
+    let three = |values: [f64; 3]| values.map(|value| widgets::fixed(value, decimals)).join("   ");
     widgets::value_row(ui, words::DEFECT, words::defect(&std_text(check.defect), &std_text(check.rounding)));
     widgets::value_row(ui, words::COLUMN_LENGTHS, three(check.column_norms));
     widgets::value_row(ui, words::COLUMN_PRODUCTS, three(check.dot_products));
-    widgets::value_row(ui, words::DETERMINANT, widgets::fixed(check.determinant, 4));
+    widgets::value_row(ui, words::DETERMINANT, widgets::fixed(check.determinant, decimals));
     if let Some(angle) = check.angle_rad {
-        widgets::value_row(ui, words::TO_NEAREST, format!("{}°", widgets::fixed(angle.to_degrees(), 3)));
+        widgets::value_row(ui, words::TO_NEAREST, words::matrix_angle(check, angle).replace('-', "−"));
     }
     if let Some(nearest) = &check.nearest {
         let rotation = nearest.to_rotation_matrix();
@@ -225,7 +229,7 @@ fn checked(ui: &mut Ui, check: &MatrixCheck) {
             for column in 0..3 {
                 let value = rotation[(line, column)];
                 let color = theme::palette(row.ui()).text;
-                row.word(width * 0.24, &widgets::fixed(value, 6), color);
+                row.word(width * 0.24, &widgets::fixed(value, decimals), color);
             }
         }
     }

@@ -9,6 +9,7 @@ use crate::app::Command;
 use crate::geometry::Vec3;
 use crate::session::{Edit, Known};
 use crate::text::verify as words;
+use crate::ui::actions::Action;
 use crate::ui::compare::table::RowCells;
 use crate::ui::{PanelContext, theme, widgets};
 use crate::verify::{Measurement, Stability, TargetEvidence};
@@ -71,7 +72,15 @@ pub(super) fn show(ui: &mut Ui, view: &View<'_>, context: &mut PanelContext<'_>,
     if places.is_empty() && view.marks.is_empty() {
         nothing_yet(ui, words::NO_PLACE, context);
     } else if places.is_empty() {
-        widgets::card(ui, words::STABILITY_TABLE, |_| {}, |ui| hint(ui, words::NO_PLACE));
+        let body = |ui: &mut Ui| {
+            hint(ui, words::NO_PLACE);
+            Frame::new().inner_margin(Margin { left: 16, right: 16, top: 0, bottom: 16 }).show(ui, |ui| {
+                if ui.button(words::ADD_TARGET).on_hover_text(words::ADD_TARGET_HINT).clicked() {
+                    context.actions.push(Action::AddFurther);
+                }
+            });
+        };
+        widgets::card(ui, words::STABILITY_TABLE, |_| {}, body);
     } else {
         state.target = state.target.min(places.len() - 1);
         let target_idx = places[state.target];

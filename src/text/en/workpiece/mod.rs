@@ -6,11 +6,12 @@ mod report;
 use std::fmt::Write as _;
 
 use crate::calibrate::Method;
-use crate::scan::{PlaneEquation, PlaneFit, RoundKind, angle_between};
+use crate::geometry::Vec3;
+use crate::scan::{MIN_PROFILES, PlaneEquation, PlaneFit, RoundKind, angle_between};
 use crate::session::SessionScan;
 use crate::text::digits::{decimals_for, fixed, signed};
 
-use super::method_name;
+use super::{method_name, plural};
 
 pub use panel::*;
 pub use report::*;
@@ -84,7 +85,28 @@ pub fn angle(first: &PlaneFit, second: &PlaneFit, nominal_deg: Option<f64>) -> S
     let compared = nominal
         .filter(|nominal| (value - nominal).abs() < COMPARED_WITHIN_DEG)
         .map_or_else(String::new, |nominal| format!(", {}° off {nominal}°", signed(value - nominal, decimals)));
-    format!("{}° ± {}°{compared}", fixed(value, decimals), fixed(std, decimals))
+    let is_known = first.is_known_from_profiles() && second.is_known_from_profiles();
+    let sign = if is_known { "±" } else { "± >" };
+    format!("{}° {sign} {}°{compared}", fixed(value, decimals), fixed(std, decimals))
+}
+
+/// How well a plane's height is known, mm: at least that badly where too few profiles met it.
+#[must_use]
+pub fn height_std(fit: &PlaneFit) -> String {
+    let std = fixed(fit.height_std_mm(), 4);
+    if fit.is_known_from_profiles() { std } else { format!("> {std}") }
+}
+
+/// Why σ of a plane is too good to be true; nothing where it is not.
+#[must_use]
+pub fn optimistic(fit: &PlaneFit) -> Option<String> {
+    (!fit.is_known_from_profiles()).then(|| {
+        format!(
+            "σ is optimistic: {} profile{} met it, and fewer than {MIN_PROFILES} do not tell how they scatter",
+            fit.num_profiles,
+            plural(fit.num_profiles)
+        )
+    })
 }
 
 /// What a round thing is called.
@@ -115,6 +137,21 @@ pub const TRUTH: &str = "truth of the simulation";
 pub const NO_TRUTH: &str = "the session was not simulated, so it knows no truth";
 /// A region without points.
 pub const EMPTY_REGION: &str = "there are no points inside of that; draw around some, or click on one";
+/// A region that is there already.
+#[must_use]
+pub fn region_is_known(name: &str) -> String {
+    format!("those points are region {name} already; remove it first, or draw around a part of it")
+}
+/// A box of the command line without points, and where there are some.
+#[must_use]
+pub fn empty_box(scan: &str, corners: &[f64], bounds_mm: Option<[Vec3; 2]>) -> String {
+    let corners: Vec<String> = corners.iter().map(f64::to_string).collect();
+    let bounds = bounds_mm.map_or_else(String::new, |[low, high]| {
+        let corner = |at: Vec3| [at.x, at.y, at.z].map(|value| fixed(value, 1)).join(" ");
+        format!("; its points are between {} and {}", corner(low), corner(high))
+    });
+    format!("--plane: found no point of {scan} in the box {} mm{bounds}", corners.join(" "))
+}
 /// A method without a result.
 #[must_use]
 pub fn no_result_of(method: Method) -> String {

@@ -5,7 +5,7 @@ use crate::scan::PlaneFit;
 use crate::text::digits::{decimals_for, fixed};
 use crate::text::en::{method_name, plural};
 
-use super::{TRUTH, equation, grouped};
+use super::{TRUTH, equation, grouped, height_std, optimistic};
 
 /// How many of the points are drawn.
 #[must_use]
@@ -124,7 +124,7 @@ pub const TOOL_POINT_HINT: &str =
 /// Tool of the picture.
 pub const TOOL_RECTANGLE: &str = "Rectangle";
 /// What it does.
-pub const TOOL_RECTANGLE_HINT: &str = "Draw a rectangle: all points inside of it, also hidden ones, become a region; Enter takes the one drawn in the middle. Shift turns the drag into a move";
+pub const TOOL_RECTANGLE_HINT: &str = "Draw a rectangle: the points inside of it that can be seen become a region; Enter takes the one drawn in the middle. Shift turns the drag into a move";
 /// Title of a card.
 pub const PLANES: &str = "Planes, and distances of random points (mm)";
 /// Button.
@@ -143,6 +143,10 @@ pub const REGION_COLUMN: &str = "  region";
 pub const EQUATION_COLUMN: &str = "equation";
 /// Heads of the columns of distances.
 pub const FIGURE_COLUMNS: [&str; 3] = ["mean", "sd", "max"];
+/// Head of a column.
+pub const STD_COLUMN: &str = "± 1 σ";
+/// Head of a column.
+pub const POINTS_COLUMN: &str = "points";
 /// Title of a card.
 pub const TEETH: &str = "Teeth";
 /// Title of a card.
@@ -150,7 +154,8 @@ pub const AGAINST_NOMINAL: &str = "Against nominal values";
 /// Head of a column.
 pub const TOOTH_COLUMN: &str = "  tooth";
 /// Heads of the columns of teeth.
-pub const TEETH_COLUMNS: [&str; 5] = ["place, mm", "pitch, mm", "error, mm", "height, mm", "error, mm"];
+pub const TEETH_COLUMNS: [&str; 7] =
+    ["place, mm", "pitch, mm", "± 1 σ", "error, mm", "height, mm", "± 1 σ", "error, mm"];
 /// What is measured.
 pub const PITCH: &str = "Pitch";
 /// What is measured.
@@ -171,8 +176,14 @@ pub const ROUND_POINTS: &str = "    points used";
 /// Title of the card with the points.
 #[must_use]
 pub fn picture_title(name: &str, num_points: usize, num_profiles: Option<usize>) -> String {
+    format!("{name}: {}", self::num_points(num_points, num_profiles))
+}
+
+/// The same without a name.
+#[must_use]
+pub fn num_points(num_points: usize, num_profiles: Option<usize>) -> String {
     let profiles = num_profiles.map_or_else(String::new, |num| format!(", {} profile{}", grouped(num), plural(num)));
-    format!("{name}: {} points{profiles}", grouped(num_points))
+    format!("{} points{profiles}", grouped(num_points))
 }
 
 /// What a screen reader calls the button.
@@ -190,15 +201,11 @@ pub fn histogram_title(num_drawn: usize, shown: &str) -> String {
 /// What is known of a plane.
 #[must_use]
 pub fn plane_hover(fit: &PlaneFit) -> String {
-    let basis = if fit.is_known_from_profiles() {
-        "from how its profiles scatter"
-    } else {
-        "as if every point counted for itself: too few profiles"
-    };
+    let basis = optimistic(fit).unwrap_or_else(|| "from how its profiles scatter".to_owned());
     format!(
         "{}\nknown to ± {} mm and ± {}° (1 σ), {basis}\n{} of {} points, RMS {} mm",
         equation(&fit.equation()),
-        fixed(fit.height_std_mm(), 4),
+        height_std(fit),
         fixed(fit.normal_std_rad().to_degrees(), 4),
         grouped(fit.num_used),
         grouped(fit.num_points),

@@ -8,7 +8,7 @@ use crate::text::digits::{decimals_for, fixed, signed};
 use crate::text::en::plural;
 use crate::verify::Figures;
 
-use super::{DISTANCE_DECIMALS, angle, equation, grouped, round_name};
+use super::{DISTANCE_DECIMALS, angle, equation, grouped, height_std, optimistic, round_name};
 
 /// What heads the output: the scan, its points and the calibration.
 #[must_use]
@@ -28,11 +28,12 @@ pub fn plane_lines(region: &Region) -> String {
     let sizes: Vec<f64> = region.distances_mm.iter().map(|distance| distance.abs()).collect();
     let figures = Figures::of(&sizes);
     let mm = |value: f64| fixed(value, DISTANCE_DECIMALS);
+    let remark = optimistic(fit).map_or_else(String::new, |remark| format!("     {remark}\n"));
     format!(
-        "  {}: {}\n     known to ± {} mm and ± {}° (1 σ); {} of {} points; {} drawn: mean {}, sd {}, max {}, RMS {} mm\n",
+        "  {}: {}\n{remark}     known to ± {} mm and ± {}° (1 σ); {} of {} points; {} drawn: mean {}, sd {}, max {}, RMS {} mm\n",
         region.name,
         equation(&fit.equation()),
-        fixed(fit.height_std_mm(), 4),
+        height_std(fit),
         fixed(fit.normal_std_rad().to_degrees(), 4),
         grouped(fit.num_used),
         grouped(fit.num_points),

@@ -11,11 +11,14 @@ use egui::{Align, ComboBox, Layout, ProgressBar, Ui};
 use crate::app::Command;
 use crate::app::workbench::scans::{ExaminedScan, RegionChoice, ScanCalibration, ScanCommand};
 use crate::calibrate::best_available;
+use crate::report::calibration_file::NamedCalibration;
 use crate::session::{Session, Target};
+use crate::text::verify::calibration_name;
 use crate::text::workpiece::{self as words, ScanChoice};
 use crate::ui::actions::Action;
 use crate::ui::cloud::{CloudScene, CloudView, Tool};
 use crate::ui::{PanelContext, theme, widgets};
+use crate::verify::Origin;
 
 use colors::{ColorBy, Colors};
 
@@ -26,6 +29,8 @@ const PLANES_HEIGHT: f32 = 264.0;
 /// Height of the teeth and the diameter.
 const SHAPES_HEIGHT: f32 = 216.0;
 
+/// What the tools of the picture take of its header.
+const TOOLS_WIDTH: f32 = 580.0;
 /// Width from which all controls have room in one row.
 const ONE_ROW_FROM: f32 = 720.0;
 
@@ -219,6 +224,7 @@ fn name_of(calibration: &ScanCalibration) -> String {
         ScanCalibration::Best => ScanChoice::Best,
         ScanCalibration::Of(method) => ScanChoice::Of(*method),
         ScanCalibration::Truth => ScanChoice::Truth,
+        ScanCalibration::Verified(named) => ScanChoice::File(&named.name),
         ScanCalibration::File(path) => {
             file_name = path.file_name().unwrap_or_default().to_string_lossy();
             ScanChoice::File(&file_name)
@@ -232,6 +238,14 @@ fn calibrations(context: &PanelContext<'_>) -> Vec<ScanCalibration> {
     let results = workbench.results().map(|results| results.methods.as_slice()).unwrap_or_default();
     let solved = results.iter().filter(|result| result.outcome.is_ok());
     choices.extend(solved.map(|result| ScanCalibration::Of(result.method)));
+    if let Some(found) = workbench.verification().last().map(|found| &found.value) {
+        let others =
+            found.calibrations.iter().filter(|known| !matches!(known.origin, Origin::Solved { target_idx: 0, .. }));
+        choices.extend(others.map(|known| {
+            let name = calibration_name(&known.origin, found);
+            ScanCalibration::Verified(NamedCalibration { name, flange_from_sensor: known.flange_from_sensor })
+        }));
+    }
     if workbench.document().is_some_and(|document| document.session.truth.is_some()) {
         choices.push(ScanCalibration::Truth);
     }
@@ -249,8 +263,15 @@ fn picture(ui: &mut Ui, context: &mut PanelContext<'_>, scan: &ExaminedScan, hei
     // In a narrow window the tools take the room of the title and of the words before them; the picture says how many points.
     // With no title at all there would be no row for the tools.
     let is_narrow = ui.available_width() < ONE_ROW_FROM;
-    let title =
-        if is_narrow { " ".to_owned() } else { words::picture_title(&scan.name, scan.cloud.len(), scan.num_profiles) };
+    let room = ui.available_width() - TOOLS_WIDTH;
+    let fits = |title: &String| {
+        let galley = ui.painter().layout_no_wrap(title.clone(), theme::strong_font(), egui::Color32::WHITE);
+        galley.size().x <= room
+    };
+    // The name is in the list of scans as well.
+    let whole = words::picture_title(&scan.name, scan.cloud.len(), scan.num_profiles);
+    let short = words::num_points(scan.cloud.len(), scan.num_profiles);
+    let title = [whole, short].into_iter().find(|title| !is_narrow && fits(title)).unwrap_or_else(|| " ".to_owned());
     let answer = widgets::card_with_height(
         ui,
         &title,

@@ -1,6 +1,9 @@
 //! The regions with their planes, the angles between them, and the distances of points drawn at random.
 
-use egui::{Align2, Color32, Margin, Rect, Role, Sense, Stroke, StrokeKind, TextEdit, Ui, UiBuilder, WidgetInfo, vec2};
+use egui::{
+    Align2, Color32, Margin, Rect, Role, ScrollArea, Sense, Stroke, StrokeKind, TextEdit, Ui, UiBuilder, WidgetInfo,
+    vec2,
+};
 use egui_extras::Column;
 
 use crate::app::workbench::scans::{ExaminedScan, ScanCommand};
@@ -22,8 +25,12 @@ const HISTOGRAM_PART: f32 = 0.3;
 const SIDE_BY_SIDE_FROM: f32 = 860.0;
 /// Width from which two angles have room side by side.
 const TWO_ANGLES_FROM: f32 = 600.0;
-/// Angles shown; those of the largest planes come first.
-const MOST_ANGLES: usize = 6;
+/// Width from which σ and the number of points have columns beside a whole equation.
+const ALL_COLUMNS_FROM: f32 = 680.0;
+/// Rows of angles that are seen at once; the others are reached by scrolling.
+const MOST_ANGLE_ROWS: usize = 3;
+/// Height of one, with the gap below it.
+const ANGLE_ROW_HEIGHT: f32 = 20.0;
 
 /// What the tables remember between frames.
 #[derive(Debug, Default)]
@@ -67,12 +74,14 @@ pub(super) fn show(
             let angles = angles(scan);
             let num_columns: u8 = if ui.available_width() < TWO_ANGLES_FROM { 1 } else { 2 };
             #[expect(clippy::cast_precision_loss, reason = "a few rows")]
-            let foot =
-                if angles.is_empty() { 0.0 } else { 14.0 + 20.0 * angles.len().div_ceil(num_columns.into()) as f32 };
+            let foot = match angles.len().div_ceil(num_columns.into()).min(MOST_ANGLE_ROWS) {
+                0 => 0.0,
+                num_rows => 14.0 + ANGLE_ROW_HEIGHT * num_rows as f32,
+            };
             let table_height = (ui.available_height() - foot).max(60.0);
             let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), table_height), Sense::hover());
             planes_table(&mut within(ui, rect), context, scan, table_height, state);
-            angle_rows(ui, &angles, num_columns);
+            ScrollArea::vertical().id_salt("angles").show(ui, |ui| angle_rows(ui, &angles, num_columns));
         },
     );
     if find {
@@ -120,10 +129,15 @@ fn planes_table(
     height: f32,
     state: &mut PlanesState,
 ) {
+    // Where there is no room for them, the words over the equation tell σ and points.
+    let has_room = ui.available_width() >= ALL_COLUMNS_FROM;
+    let num_more = if has_room { 1 } else { 0 };
     ui.push_id("planes", |ui| {
         let builder = table(ui, "planes")
             .column(Column::exact(60.0))
             .column(Column::remainder().at_least(200.0).clip(true))
+            .columns(Column::exact(66.0), num_more)
+            .columns(Column::exact(54.0), num_more)
             .columns(Column::exact(54.0), 3)
             .column(Column::exact(30.0))
             .auto_shrink([false, false])
@@ -132,7 +146,8 @@ fn planes_table(
         let header = builder.header(theme::ROW_HEIGHT, |mut row| {
             head(&mut row, words::REGION_COLUMN);
             head(&mut row, words::EQUATION_COLUMN);
-            for name in words::FIGURE_COLUMNS {
+            let more = [words::STD_COLUMN, words::POINTS_COLUMN].into_iter().filter(|_| has_room);
+            for name in more.chain(words::FIGURE_COLUMNS) {
                 number_head(&mut row, name);
             }
             head(&mut row, "");
@@ -154,6 +169,11 @@ fn planes_table(
                         ui.add(egui::Label::new(theme::dim(ui, error.to_string())).truncate());
                     }
                 });
+                if has_room {
+                    let fit = region.plane.as_ref().ok();
+                    number_cell(&mut row, fit.map_or_else(String::new, words::height_std));
+                    number_cell(&mut row, words::grouped(region.set.len()));
+                }
                 let sizes: Vec<f64> = region.distances_mm.iter().map(|distance| distance.abs()).collect();
                 let figures = Figures::of(&sizes);
                 for value in [figures.mean_mm, figures.std_mm, figures.max_mm] {
@@ -206,7 +226,6 @@ fn angles(scan: &ExaminedScan) -> Vec<(String, String)> {
         scan.regions.iter().filter_map(|region| Some((region.name.as_str(), region.plane.as_ref().ok()?))).collect();
     let pairs = (0..fits.len()).flat_map(|second| (0..second).map(move |first| (first, second)));
     pairs
-        .take(MOST_ANGLES)
         .map(|(first, second)| {
             let (a, b) = (fits[first], fits[second]);
             (words::angle_label(a.0, b.0), words::angle(a.1, b.1, scan.known.angle_deg).replace('-', "−"))

@@ -58,7 +58,7 @@ pub(super) fn show(ui: &mut Ui, scan: &ExaminedScan, height: f32) {
 
 fn teeth_table(ui: &mut Ui, teeth: &Teeth, known: &Known) {
     ui.push_id("teeth", |ui| {
-        let builder = table(ui, "teeth").column(egui_extras::Column::exact(56.0)).columns(number_column(70.0), 5);
+        let builder = table(ui, "teeth").column(egui_extras::Column::exact(56.0)).columns(number_column(62.0), 7);
         let header = builder.header(theme::ROW_HEIGHT, |mut row| {
             head(&mut row, words::TOOTH_COLUMN);
             for name in words::TEETH_COLUMNS {
@@ -77,6 +77,7 @@ fn teeth_table(ui: &mut Ui, teeth: &Teeth, known: &Known) {
                 for (measured, nominal_mm) in [(tooth.pitch, known.pitch_mm), (tooth.height, known.height_mm)] {
                     let value = measured.map_or(f64::NAN, |measured| measured.value_mm);
                     number_cell(&mut row, widgets::fixed(value, 3));
+                    number_cell(&mut row, widgets::fixed(measured.map_or(f64::NAN, |measured| measured.std_mm), 3));
                     let error = nominal_mm.map_or(f64::NAN, |nominal_mm| value - nominal_mm);
                     number_cell(&mut row, widgets::signed(error, 3));
                 }
