@@ -2,7 +2,8 @@
 //! on either side. Where the two flanks of these heights meet, the line is on the tip.
 //!
 //! A cone's section is as much lower as it is beside the tip, on either side and however the sensor is tilted: its flanks are
-//! straight, so a few heights on each are enough. What is seen beside a tip is no tip, so only the last profile is kept.
+//! straight, so a few heights on each are enough. They are taken near the tip: further down the shaft begins, and falls
+//! differently. What is seen beside a tip is no tip, so only the last profile is kept.
 
 use thiserror::Error;
 
@@ -13,8 +14,10 @@ use crate::geometry::stats::median;
 use super::settings::{SearchSettings, SettingsRefusal};
 
 /// Heights on each flank, and the fewest that will do on a narrow one.
-const NUM_ON_FLANK: usize = 3;
+const NUM_ON_FLANK: u8 = 4;
 const FEWEST_ON_FLANK: usize = 2;
+/// They are this part of a step apart.
+const APART_STEPS: f64 = 0.5;
 /// Heights nearer to each other than this tell nothing beside the noise of the robot, mm.
 const FINEST_MM: f64 = 0.1;
 /// By that noise another place than the nearest to the tip may seem the highest: the tip is this near to its neighbours, mm.
@@ -142,39 +145,45 @@ impl TipSearch {
         self.seen().max_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(look, _)| look)
     }
 
-    /// What is seen on a side of the highest place, the nearest first: distance and height, mm.
+    /// What is seen on a side of the highest place and near to it, the nearest first: distance and height, mm.
     fn flank(&self, side: f64, highest: &Look) -> Vec<[f64; 2]> {
-        let distance = |look: &Look| side * (look.commanded_mm - highest.commanded_mm);
+        let reach_mm = f64::from(NUM_ON_FLANK) * self.apart_mm() + FINEST_MM;
         let mut flank: Vec<[f64; 2]> = self
             .seen()
-            .map(|(look, height_mm)| [distance(&look), height_mm])
-            .filter(|[distance_mm, _]| *distance_mm > 0.0)
+            .map(|(look, height_mm)| [side * (look.commanded_mm - highest.commanded_mm), height_mm])
+            .filter(|[distance_mm, _]| *distance_mm > 0.0 && *distance_mm < reach_mm)
             .collect();
         flank.sort_by(|a, b| a[0].total_cmp(&b[0]));
         flank
     }
 
+    fn apart_mm(&self) -> f64 {
+        APART_STEPS * self.settings.step_mm
+    }
+
     fn wanted_on(&self, side: f64, highest: &Look) -> Wanted {
+        let place_mm = |distance_mm: f64| highest.commanded_mm + side * distance_mm;
+        let distance = |look: &Look| side * (look.commanded_mm - highest.commanded_mm);
+        if self.looks.iter().all(|look| distance(look) <= 0.0) {
+            return Wanted::Beyond(place_mm(self.settings.step_mm));
+        }
         let flank = self.flank(side, highest);
-        if flank.len() >= NUM_ON_FLANK {
+        if flank.len() >= usize::from(NUM_ON_FLANK) {
             return Wanted::Nothing;
         }
-        let place_mm = |distance_mm: f64| highest.commanded_mm + side * distance_mm;
         let furthest_mm = flank.last().map_or(0.0, |[distance_mm, _]| *distance_mm);
-        let lost_mm = self
-            .looks
-            .iter()
-            .filter(|look| look.height_mm.is_none())
-            .map(|look| side * (look.commanded_mm - highest.commanded_mm))
-            .filter(|distance_mm| *distance_mm > furthest_mm)
-            .fold(f64::INFINITY, f64::min);
-        let next_mm = furthest_mm + self.settings.step_mm;
-        if next_mm < lost_mm - FINEST_MM {
+        let lost = self.looks.iter().filter(|look| look.height_mm.is_none()).map(distance);
+        let lost_mm = lost.filter(|distance_mm| *distance_mm > furthest_mm).fold(f64::INFINITY, f64::min);
+        let is_open = |distance_mm: &f64| {
+            *distance_mm < lost_mm - FINEST_MM && flank.iter().all(|seen| (seen[0] - distance_mm).abs() > FINEST_MM)
+        };
+        let mut usual = (1..=NUM_ON_FLANK).map(|idx| f64::from(idx) * self.apart_mm());
+        if let Some(next_mm) = usual.find(is_open) {
             return Wanted::Beyond(place_mm(next_mm));
         }
         // The widest gap, that to where it was lost included.
         let ends = std::iter::once(0.0).chain(flank.iter().map(|[distance_mm, _]| *distance_mm)).chain([lost_mm]);
-        let ends: Vec<f64> = ends.collect();
+        let ends: Vec<f64> = ends.filter(|end| end.is_finite()).collect();
         let widest = ends.windows(2).max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
         match widest {
             Some(gap) if gap[1] - gap[0] >= 2.0 * FINEST_MM => Wanted::Between(place_mm(f64::midpoint(gap[0], gap[1]))),
