@@ -176,12 +176,8 @@ fn a_plate_plays_again_through_the_panel() {
 
 #[test]
 fn a_run_on_a_pin_searches_its_tip_and_gives_a_result_within_its_stated_sigma() {
-    for (seed, robot) in [
-        (36, RobotKind::FanucMappdk),
-        (37, RobotKind::FanucMappdk),
-        (102, RobotKind::UniversalRobots),
-        (105, RobotKind::UniversalRobots),
-    ] {
+    for (seed, robot) in [(36, RobotKind::FanucMappdk), (37, RobotKind::FanucMappdk), (102, RobotKind::UniversalRobots)]
+    {
         let options = SimOptions { robot, ..on(PartKind::Pin, seed) };
         let mut bench = Bench::new().practise_with(&options).armed();
         assert_eq!(bench.session().target, Target::Point);

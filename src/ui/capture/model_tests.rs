@@ -342,8 +342,8 @@ fn wrong_settings_are_told_and_keep_the_robot_still() {
         problem::COARSE_IS_FINER,
         problem::STEP_BEYOND_BALL,
         problem::STEP_TOO_LONG,
-        problem::TRANSIT_TOO_FAST,
         problem::SEARCH_TOO_FAST,
+        problem::TRANSIT_TOO_FAST,
         problem::TURNS_TOO_FAST,
         problem::EMPTY_BOX,
     ];
