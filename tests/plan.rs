@@ -189,6 +189,7 @@ fn limits_and_view_are_respected() {
             max_spin_deg: 45.0,
             standoff_mm: Some([88.0, 102.0]),
             half_width_mm: Some(5.0),
+            ..Limits::default()
         };
         let (plan, solution) = planned(&session, &limits, 6);
         assert_eq!(plan.stations.len(), 6);

@@ -221,6 +221,7 @@ fn limits_and_view_are_respected() {
             max_spin_deg: 30.0,
             standoff_mm: Some([70.0, 90.0]),
             half_width_mm: Some(6.0),
+            ..Limits::default()
         };
         let plan = planned(&session, &limits, 6);
         assert!(plan.stations.iter().any(|station| station.edge == Some(Edge::P)));

@@ -116,6 +116,7 @@ fn limits(args: &PlanArgs) -> Limits {
         max_spin_deg: args.max_spin_deg,
         standoff_mm: args.standoff_mm.as_deref().and_then(|range| range.try_into().ok()),
         half_width_mm: args.half_width_mm,
+        ..Limits::default()
     }
 }
 

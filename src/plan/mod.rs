@@ -53,11 +53,28 @@ pub struct Limits {
     pub standoff_mm: Option<[f64; 2]>,
     /// How far from the middle of the profile it may be; `None`: as the stations had it, mm.
     pub half_width_mm: Option<f64>,
+    /// How far a plate's edges are taken to go on beyond where they were crossed, mm.
+    pub beyond_mm: f64,
+    /// The edge of a plate that stations are wanted on; `None`: either.
+    pub only_edge: Option<Edge>,
+}
+
+impl Limits {
+    fn allows(&self, edge: Edge) -> bool {
+        self.only_edge.is_none_or(|only| only == edge)
+    }
 }
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { max_tilt_deg: 30.0, max_spin_deg: 90.0, standoff_mm: None, half_width_mm: None }
+        Self {
+            max_tilt_deg: 30.0,
+            max_spin_deg: 90.0,
+            standoff_mm: None,
+            half_width_mm: None,
+            beyond_mm: 0.0,
+            only_edge: None,
+        }
     }
 }
 

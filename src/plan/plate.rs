@@ -72,12 +72,16 @@ impl Plate {
         }
         plate.edges = [Edge::P, Edge::Q]
             .into_iter()
+            .filter(|edge| limits.allows(*edge))
             .map(|edge| {
                 let points = || reduced.points.iter().filter(move |point| point.edge == edge);
                 Ok(EdgeModel {
                     edge,
                     in_plane: plate.typical_in_plane(points(), &reduced.points).ok_or(PlanRefusal::Undetermined)?,
-                    along_mm: extent(points().map(|point| plate.state.in_plate(point)[along(edge)])),
+                    along_mm: beyond(
+                        extent(points().map(|point| plate.state.in_plate(point)[along(edge)])),
+                        limits.beyond_mm,
+                    ),
                     orientations: Orientations::about_mean_of(
                         points().map(|point| base_from_sensor(&plate.state, point)),
                         limits,
@@ -193,6 +197,11 @@ impl Subject<NUM_UNKNOWNS> for Plate {
         }
         Some(by_unknowns.transpose() * information * by_unknowns)
     }
+}
+
+/// Where an edge may be crossed that goes on beyond where it was: no nearer to the corner than so far, unless it was there.
+fn beyond([least, most]: [f64; 2], beyond_mm: f64) -> [f64; 2] {
+    [(least - beyond_mm).max(least.min(beyond_mm)), most + beyond_mm]
 }
 
 /// How near the other edge came to the point on the line so far, mm.

@@ -168,6 +168,7 @@ pub fn next_rough_edge(
     };
     let edges = [Edge::P, Edge::Q]
         .into_iter()
+        .filter(|edge| limits.allows(*edge))
         .map(|edge| {
             let first = seen.iter().find(|seen| seen.edge == edge).unwrap_or(first);
             Ok(EdgeModel {

@@ -68,6 +68,9 @@ fn a_run_over_eight_stations_gives_a_result_within_its_stated_sigma() {
 #[test]
 fn a_run_as_long_as_the_outlook_says_ends_good() {
     let mut bench = Bench::practising(1, FAST).armed();
+    // So far from where the ball is seen it takes more stations than a run begins with.
+    let far = Edit::Setup(SetupField::ReferenceDistanceMm(Some(200.0)));
+    bench.workbench.apply(Command::Edit { edit: far, gesture: None });
     bench.cell(CellCommand::StartRun { num_stations: 8 });
     bench.wait_for_rest();
     let outlook = |workbench: &Workbench| workbench.current_plan().and_then(Outlook::new);

@@ -175,7 +175,7 @@ impl Runner {
                     self.tell(RoutineEvent::Settling);
                     let seen = self.capture(None)?;
                     let found = extract_edge(&seen.profile, options).ok();
-                    search.take(commanded_mm, found.and_then(|found| height_mm(&seen.profile, &found)));
+                    search.take(commanded_mm, height_mm(&seen.profile, found.as_ref()));
                 }
             }
         }

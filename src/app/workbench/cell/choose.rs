@@ -58,6 +58,11 @@ impl Chooser {
         for _ in 0..MOST_TRIES {
             let candidates = match self.candidates() {
                 Ok(candidates) => candidates,
+                // Where nothing will do on the wanted edge, something may on the other.
+                Err(_) if self.limits.only_edge.is_some() => {
+                    self.limits.only_edge = None;
+                    continue;
+                }
                 Err(reason) if first.is_none() => return Err(reason),
                 Err(_) => break,
             };
@@ -69,7 +74,9 @@ impl Chooser {
                 self.avoided.push(to);
                 first.get_or_insert(chosen);
             }
-            self.narrow();
+            if self.limits.only_edge.take().is_none() {
+                self.narrow();
+            }
         }
         first.ok_or_else(|| PlanRefusal::NothingWithinLimits.to_string())
     }

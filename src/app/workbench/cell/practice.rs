@@ -88,7 +88,7 @@ fn session_for(truth: &SimTruth, options: &SimOptions) -> Session {
     session.robot.position_std_mm = stated(position_std_mm);
     session.robot.orientation_std_deg = stated(orientation_std_deg);
     session.sensor.profile_std_mm = stated(truth.profile_std_mm);
-    session.sensor.reference_distance_mm = Some(truth.reference_distance_mm);
+    // The head counts its heights from the reference distance, not to it: the workspace is where the target was seen.
     session.sensor.rough_flange_from_sensor =
         (part == Some(PartKind::Plate)).then(|| Transform::from_rigid(truth.rough_flange_from_sensor));
     let part_in_base = truth.base_from_part;

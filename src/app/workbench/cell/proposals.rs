@@ -7,6 +7,7 @@ use crate::app::jobs::{JobOutcome, Slot};
 use crate::device::{MotionRefusal, SearchSettings};
 use crate::geometry::{Base, Flange, Profile, Rigid, Transform, Vec3};
 use crate::plan::{Limits, PlannedStation};
+use crate::session::Edge;
 use crate::text::cell as words;
 
 use super::super::{NoticeKind, Workbench};
@@ -14,6 +15,10 @@ use super::choose::{Basis, Chooser, Chosen, check_station};
 
 /// Further than this the sensor is not tilted about a tip, degrees.
 const MOST_TILT_AT_TIP_DEG: f64 = 18.0;
+
+/// A solution whose σ is above this (mm) may be further off than the edges of the view: what was said of the mounting is
+/// still worth more.
+const LOOSE_MM: f64 = 0.5;
 
 /// The way to a proposal.
 #[derive(Default)]
@@ -130,7 +135,9 @@ impl Workbench {
                     report: self.cell.view.robot.latest.clone(),
                     search: self.search_at_stations(),
                 };
-                (0..self.cell.proposing.num_refused).for_each(|_| chooser.narrow());
+                // Nearer to the middle of what was measured there is less to go wrong.
+                let num_narrower = self.cell.proposing.num_refused + self.num_given_up_in_a_row();
+                (0..num_narrower).for_each(|_| chooser.narrow());
                 self.cell.proposing.choosing.start("propose", &self.wake, move |_| chooser.choose());
             }
             Err(reason) => self.take_no_proposal(reason),
@@ -138,12 +145,28 @@ impl Workbench {
         true
     }
 
-    /// The flanks of a tip are steep as it is: tilted as far as a ball allows, one of them is not seen any more.
+    /// The flanks of a tip are steep as it is: tilted as far as a ball allows, one of them is not seen any more. A plate's
+    /// edges tell more the longer they are followed.
     fn limits_of_target(&self) -> Limits {
         let limits = self.plan_limits;
         let is_tip = self.sought().is_some_and(|sought| sought.is_tip());
         let most_tilt_deg = if is_tip { MOST_TILT_AT_TIP_DEG } else { limits.max_tilt_deg };
-        Limits { max_tilt_deg: limits.max_tilt_deg.min(most_tilt_deg), ..limits }
+        // Where something could not be gone to or showed nothing, the edge may have ended.
+        let beyond_mm = if self.cell.proposing.avoided.is_empty() { self.edge_goes_on_for_mm() } else { 0.0 };
+        let only_edge = self.edge_behind();
+        Limits { max_tilt_deg: limits.max_tilt_deg.min(most_tilt_deg), beyond_mm, only_edge, ..limits }
+    }
+
+    /// The edge of a plate that was asked for less often than the other by two: both have to be known well.
+    fn edge_behind(&self) -> Option<Edge> {
+        let stations = &self.document.as_ref()?.session.stations;
+        let [num_p, num_q] =
+            [Edge::P, Edge::Q].map(|edge| stations.iter().filter(|station| station.edge == Some(edge)).count());
+        match () {
+            () if num_p + 2 <= num_q => Some(Edge::P),
+            () if num_q + 2 <= num_p => Some(Edge::Q),
+            () => None,
+        }
     }
 
     fn take_no_proposal(&mut self, reason: String) {
@@ -223,6 +246,11 @@ impl Workbench {
 
     /// What the next station is chosen by.
     fn basis(&self) -> Result<Basis, String> {
+        let is_rough =
+            self.current_plan().and_then(|plan| plan.workspace_point_std_mm).is_none_or(|std| std > LOOSE_MM);
+        if is_rough && let Ok(basis) = self.rough_basis() {
+            return Ok(basis);
+        }
         match (self.current_plan(), self.case()) {
             (Some(plan), Some((_, _, results))) => {
                 let mut planned = plan.clone();

@@ -100,7 +100,7 @@ impl Workbench {
             return Err(words::edge_unseen(edge));
         }
         let view = view_of_points(&points);
-        let half_line_mm = points.iter().map(|point| point.half_line_mm).fold(f64::INFINITY, f64::min);
+        let half_line_mm = shortest_half_line_mm(&points);
         match RoughPlate::through(session.mount, flange_from_sensor, noise(session), &seen) {
             Ok(mut cell) => {
                 let [nearest, furthest] = cell.along_mm;
@@ -120,6 +120,14 @@ impl Workbench {
             }
             Err(refusal) => Err(refusal.to_string()),
         }
+    }
+
+    /// How far a plate's edges are taken to go on beyond where they were crossed, mm; 0 of any other target.
+    pub(super) fn edge_goes_on_for_mm(&self) -> f64 {
+        let is_plate =
+            self.document.as_ref().is_some_and(|document| document.session.target == Target::RightAnglePlate);
+        let seen = if is_plate { self.seen_points() } else { Vec::new() };
+        if seen.is_empty() { 0.0 } else { BEYOND_PART * shortest_half_line_mm(&seen) }
     }
 
     /// The largest section of each station; without stations that which is seen now.
@@ -226,12 +234,16 @@ impl SeenPoint {
 }
 
 fn view_of_points(seen: &[SeenPoint]) -> View {
-    let half_line_mm = seen.iter().map(|point| point.half_line_mm).fold(f64::INFINITY, f64::min);
+    let half_line_mm = shortest_half_line_mm(seen);
     View {
         half_width_mm: EDGE_HALF_WIDTH_PART * half_line_mm,
         half_range_mm: EDGE_HALF_RANGE_PART * half_line_mm,
         middle_range_mm: middle_range_mm(seen.iter().map(|point| point.point_in_sensor_mm.z)),
     }
+}
+
+fn shortest_half_line_mm(seen: &[SeenPoint]) -> f64 {
+    seen.iter().map(|point| point.half_line_mm).fold(f64::INFINITY, f64::min)
 }
 
 fn half_line_mm(profile: &Profile) -> f64 {

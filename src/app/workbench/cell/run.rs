@@ -118,6 +118,11 @@ impl Workbench {
         self.show_run();
     }
 
+    /// Stations in a row that a run has given up by now.
+    pub(super) fn num_given_up_in_a_row(&self) -> u32 {
+        self.cell.run.as_ref().map_or(0, |run| run.num_failed_in_a_row.into())
+    }
+
     /// Whether more than the station where the robot stands can be found.
     fn can_propose_after_one(&self) -> bool {
         let is_solved = self.results().is_some_and(|results| best_available(&results.methods).is_some());
