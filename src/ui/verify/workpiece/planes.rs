@@ -131,7 +131,7 @@ fn planes_table(
 ) {
     // Where there is no room for them, the words over the equation tell σ and points.
     let has_room = ui.available_width() >= ALL_COLUMNS_FROM;
-    let num_more = if has_room { 1 } else { 0 };
+    let num_more = usize::from(has_room);
     ui.push_id("planes", |ui| {
         let builder = table(ui, "planes")
             .column(Column::exact(60.0))
