@@ -285,3 +285,41 @@ fn check_judges_by_the_method_that_gives_the_answer_and_names_it() {
         assert_eq!(said.contains("nothing odd found"), !is_far, "{said}");
     }
 }
+
+#[test]
+fn a_calibration_is_written_for_a_controller_and_refused_where_it_would_be_wrong() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let fixed = path("fixed.json");
+    let wrong = path("wrong.txt");
+    let turned = path("turned.txt");
+    std::fs::write(&turned, "0 -1 0 10\n1 0 0 -20.5\n0 0 1 125.25\n0 0 0 1\n").expect("written");
+    std::fs::write(&wrong, "0 -1 0.3 10\n1 0 0 -20.5\n0 0 1 125.25\n0 0 0 1\n").expect("written");
+    let result = r#"{"format": "handeye-result", "version": 1, "methods": [{"method": "ball-bundle", "status": "ok", "base_from_sensor":
+        {"matrix": [[1, 0, 0, 1], [0, 1, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]]}}]}"#;
+    std::fs::write(&fixed, result).expect("written");
+    let sample = "sample_sessions/plate.json";
+    for (args, status, held) in [
+        (&["tool-frame", &turned, "--format", "fanuc-ls", "--number", "3"][..], 0, "PR[81,6]=90.0000 ;"),
+        (&["tool-frame", &turned, "--format", "fanuc-ls", "--number", "3"], 0, "UTOOL[3]=PR[81] ;"),
+        (&["tool-frame", sample, "--format", "urdf", "--format", "ur-script"], 0, "# standard deviation: 0.1"),
+        (&["tool-frame", &fixed, "--format", "ros2-yaml"], 0, "frame_id: base_link"),
+        (&["tool-frame", &fixed, "--format", "kuka-config"], 2, "stands beside the robot"),
+        (&["tool-frame", &wrong, "--format", "matrix"], 2, "no rotation"),
+        (&["tool-frame", &turned, "--format", "fanuc"], 2, "found fanuc, expected the name of a format"),
+        (&["tool-frame", "sample_sessions/workpiece.json", "--format", "matrix"], 3, "no"),
+        (&["tool-frame", "--list"], 0, "staubli-val3"),
+        (&["tool-frame", &turned], 2, "--format"),
+    ] {
+        let output = handeye(args);
+        let said = stdout(&output) + &String::from_utf8(output.stderr.clone()).expect("UTF-8");
+        assert_eq!(output.status.code(), Some(status), "{args:?}: {said}");
+        assert!(said.contains(held), "{args:?}: {held:?} is not in\n{said}");
+    }
+    let out = path("frames");
+    let args = ["tool-frame", &turned, "--format", "abb-rapid", "--out", &out];
+    assert_eq!(handeye(&args).status.code(), Some(0));
+    assert!(folder.path().join("frames/abb-rapid.mod").exists());
+    // What is there is not overwritten unasked.
+    assert_eq!(handeye(&args).status.code(), Some(2));
+}

@@ -18,6 +18,7 @@ pub mod scan;
 pub mod screenshot;
 pub mod simulate;
 pub mod solve;
+pub mod tool_frame;
 pub mod verify;
 
 /// The input is wrong.
@@ -52,6 +53,8 @@ pub enum Command {
     Import(Box<import::ImportArgs>),
     /// Exports the poses and profiles of a session file as CSV
     Export(export::ExportArgs),
+    /// Writes a calibration as the tool frame of a controller, for ROS, or as a matrix
+    ToolFrame(tool_frame::ToolFrameArgs),
     /// Measures planes, teeth and diameters of a scanned part, and exports its points
     Scan(Box<scan::ScanArgs>),
     /// Plans the stations to measure next
@@ -76,6 +79,7 @@ impl Command {
             Self::Check(args) => check::run(args),
             Self::Import(args) => import::run(args),
             Self::Export(args) => export::run(args),
+            Self::ToolFrame(args) => tool_frame::run(args),
             Self::Scan(args) => scan::run(args),
             Self::Plan(args) => plan::run(args),
             Self::Simulate(args) => simulate::run(args),

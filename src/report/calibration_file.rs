@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 use thiserror::Error;
 
+use crate::calibrate::Mount;
 use crate::geometry::{Flange, Mat3, Sensor, Transform, Vec3};
 use crate::text::verify::nearest_of;
 use crate::verify::{GivenMatrix, MatrixCheck, MatrixRefusal, parse_matrix};
@@ -83,6 +84,8 @@ pub struct NamedCalibration {
 pub struct ReadCalibration {
     /// The file's name, and the method in it.
     pub name: String,
+    /// Where the sensor is mounted, as far as the file says: a matrix says nothing, and is taken for that of a carried one.
+    pub mount: Mount,
     /// What was found when the matrix was looked at.
     pub check: MatrixCheck,
     /// It, or the nearest to a matrix that is no rotation.
@@ -104,15 +107,22 @@ impl ReadCalibration {
 /// # Errors
 /// [`CalibrationFileError`].
 pub fn read_calibration(path: &Path) -> Result<ReadCalibration, CalibrationFileError> {
-    let (name, matrix) = read_matrix(path)?;
+    let Written { name, mount, matrix } = read_matrix(path)?;
     let check = matrix.check();
     match matrix.nearest() {
-        Some(flange_from_sensor) => Ok(ReadCalibration { name, check, flange_from_sensor }),
+        Some(flange_from_sensor) => Ok(ReadCalibration { name, mount, check, flange_from_sensor }),
         None => Err(CalibrationFileError::NoRotation { file: path.to_owned(), determinant: check.determinant }),
     }
 }
 
-fn read_matrix(path: &Path) -> Result<(String, GivenMatrix), CalibrationFileError> {
+/// What stands in a file.
+struct Written {
+    name: String,
+    mount: Mount,
+    matrix: GivenMatrix,
+}
+
+fn read_matrix(path: &Path) -> Result<Written, CalibrationFileError> {
     let unreadable = |problem| CalibrationFileError::Unreadable { file: path.to_owned(), problem };
     let file_name =
         path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned());
@@ -122,15 +132,15 @@ fn read_matrix(path: &Path) -> Result<(String, GivenMatrix), CalibrationFileErro
     let text = std::str::from_utf8(&bytes).map_err(|_| neither("bytes that are no text"))?;
     if text.trim_start().starts_with('{') {
         let value: Value = serde_json::from_str(text).map_err(|error| neither(&format!("broken JSON ({error})")))?;
-        let (method, matrix) = from_result(path, &value)?;
-        return Ok((format!("{file_name}: {method}"), matrix));
+        let written = from_result(path, &value)?;
+        return Ok(Written { name: format!("{file_name}: {}", written.name), ..written });
     }
     let matrix =
         parse_matrix(text).map_err(|refusal| CalibrationFileError::NoMatrix { file: path.to_owned(), refusal })?;
-    Ok((file_name, matrix))
+    Ok(Written { name: file_name, mount: Mount::OnFlange, matrix })
 }
 
-fn from_result(path: &Path, value: &Value) -> Result<(String, GivenMatrix), CalibrationFileError> {
+fn from_result(path: &Path, value: &Value) -> Result<Written, CalibrationFileError> {
     let invalid = |at: &str, found: &Value, expected| CalibrationFileError::Invalid {
         file: path.to_owned(),
         path: at.to_owned(),
@@ -148,13 +158,16 @@ fn from_result(path: &Path, value: &Value) -> Result<(String, GivenMatrix), Cali
     let Some(entry) = entry else {
         return Err(invalid(list, &value[list], "at least one method with a result"));
     };
-    let calibration = ["flange_from_sensor", "base_from_sensor"].iter().find_map(|name| entry.get(name));
-    let rows = calibration.and_then(|calibration| matrix_of(&calibration["matrix"]));
-    let Some(matrix) = rows else {
-        let found = calibration.unwrap_or(&Value::Null);
+    let of_mount = |(name, mount)| entry.get(name).map(|calibration| (calibration, mount));
+    let found =
+        [("flange_from_sensor", Mount::OnFlange), ("base_from_sensor", Mount::Fixed)].into_iter().find_map(of_mount);
+    let Some((mount, matrix)) =
+        found.and_then(|(calibration, mount)| Some((mount, matrix_of(&calibration["matrix"])?)))
+    else {
+        let found = found.map_or(&Value::Null, |(calibration, _)| calibration);
         return Err(invalid(&format!("{list}[].flange_from_sensor"), found, "an object with a 4 × 4 matrix"));
     };
-    Ok((entry[name].as_str().unwrap_or("?").to_owned(), matrix))
+    Ok(Written { name: entry[name].as_str().unwrap_or("?").to_owned(), mount, matrix })
 }
 
 fn list<'a>(value: &'a Value, name: &str) -> &'a [Value] {

@@ -5,6 +5,7 @@ pub mod calibration_file;
 mod diagnosis_entry;
 pub mod result_file;
 pub mod scan_file;
+pub mod tool_frame;
 pub mod verification_file;
 
 pub use crate::text::digits;

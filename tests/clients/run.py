@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Holds the simulated cell against clients that others wrote.
+"""Holds the simulated cell and the exported tool frames against programs that others wrote.
 
     python3 tests/clients/run.py target/debug/handeye [FOLDER]
 
 Makes a virtual environment in FOLDER (a temporary one if none is named), installs the clients of requirements.txt there,
-starts `handeye cell` for each protocol, and runs checks.py. Ends with 0 if all is well, 1 if a check failed or a cell did not
+starts `handeye cell` for each protocol, runs checks.py, and runs tool_frames.py. Ends with 0 if all is well, 1 if a check failed or a cell did not
 start, and 3 with lines "skipped: ..." if something could not be checked: no clients, or no free ports.
 """
 
@@ -120,6 +120,13 @@ def check(python, program, robot, sensor, names, offsets=OFFSETS):
         return None
 
 
+def check_tool_frames(python, program):
+    """Holds exported tool frames against the conventions of another program."""
+    script = str(HERE / "tool_frames.py")
+    done = subprocess.run([str(python), script, program], timeout=CHECK_TIMEOUT_S, check=False)
+    return done.returncode == 0
+
+
 def main():
     if len(sys.argv) not in (2, 3):
         print(__doc__)
@@ -136,6 +143,7 @@ def main():
             check(python, program, "mappdk", "ljv", ["fanucpy", "fanuc-python", "fanuc-logger", "ljv"]),
             # The receiving half of ur_rtde knows one port only.
             check(python, program, "ur", "ljv", ["ur-receive", "ur-dashboard", "ur-script"], offsets=[0]),
+            check_tool_frames(python, program),
         ]
     if False in outcomes:
         return 1

@@ -20,6 +20,7 @@ pub mod methods;
 pub mod poses;
 pub mod shell;
 pub mod start;
+pub mod tool_frame;
 pub mod verify;
 pub mod warnings;
 pub mod workpiece;

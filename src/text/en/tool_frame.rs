@@ -1,0 +1,80 @@
+//! Words of the tool frame as text.
+
+use crate::geometry::PoseConvention;
+use crate::text::digits;
+
+/// The heading of an export: what it is, in which convention, and how well it is known. `std` holds one σ of the translation,
+/// mm, and of the rotation, degrees, each about the axis where it is largest.
+#[must_use]
+pub fn heading(
+    is_carried: bool,
+    convention: Option<&PoseConvention>,
+    units: &str,
+    remark: Option<&str>,
+    std: Option<[f64; 2]>,
+) -> Vec<String> {
+    let what = if is_carried {
+        "flange_from_sensor: the sensor's frame in the flange"
+    } else {
+        "base_from_sensor: the sensor's frame in the robot's base"
+    };
+    let mut lines = vec![format!("Handeye, {what}")];
+    lines.push(match convention {
+        Some(convention) => format!("{units}; R = {}", convention.formula),
+        None => units.to_owned(),
+    });
+    lines.push("sensor: laser plane y = 0, x across the line, z along the range axis".to_owned());
+    if let Some([translation_mm, rotation_deg]) = std {
+        lines.push(format!(
+            "standard deviation: {} mm, {} deg at most along an axis",
+            digits::value(translation_mm, Some(translation_mm)),
+            digits::value(rotation_deg, Some(rotation_deg)),
+        ));
+    }
+    lines.extend(remark.map(str::to_owned));
+    lines
+}
+
+/// Neither a file nor a list is wanted.
+pub const NO_FILE: &str = "found no file, expected a session, a result file or a matrix";
+
+/// A line of the list of formats.
+#[must_use]
+pub fn list_line(id: &str, label: &str, units: &str) -> String {
+    format!("{id:<22} {label} ({units})\n")
+}
+
+/// A name that no format has.
+#[must_use]
+pub fn no_such_format(id: &str) -> String {
+    format!("found {id}, expected the name of a format; `handeye tool-frame --list` lists them")
+}
+
+/// A controller's tool, wanted of a sensor that no robot carries.
+#[must_use]
+pub fn not_of_a_fixed_sensor(id: &str) -> String {
+    format!(
+        "found a sensor that stands beside the robot, but {id} is the tool of a carried one; take a matrix, a quaternion or a ROS transform"
+    )
+}
+
+/// A folder that cannot be made.
+#[must_use]
+pub fn no_folder(folder: &str, problem: &str) -> String {
+    format!("cannot make the folder {folder}: {problem}")
+}
+
+/// A file was written, and what came back.
+#[must_use]
+pub fn wrote(file: &str, translation_mm: f64, rotation_deg: f64) -> String {
+    format!("wrote {file} (read back: off by {translation_mm:.4} mm and {rotation_deg:.5}°, the rounding)\n")
+}
+
+/// A matrix that is not a rotation: its nearest one may be far from what was meant, and a robot would follow it.
+#[must_use]
+pub fn no_rotation(file: &str, defect: f64) -> String {
+    format!(
+        "{file}: found a matrix whose left part is no rotation (RᵀR is off 1 by up to {defect:.3}), expected one that a robot can \
+         be given; `handeye verify --calibration` names the likely misprint"
+    )
+}
