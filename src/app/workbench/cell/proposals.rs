@@ -157,15 +157,12 @@ impl Workbench {
         Limits { max_tilt_deg: limits.max_tilt_deg.min(most_tilt_deg), beyond_mm, only_edge, ..limits }
     }
 
-    /// The edge of a plate that is behind the other by two stations: both have to be known well. What was given up counts
-    /// half, as an edge may not be in reach any further.
+    /// The edge of a plate that was asked for less often than the other by two: both have to be known well. What was given
+    /// up counts as well, as an edge may not be in reach any further.
     fn edge_behind(&self) -> Option<Edge> {
         let stations = &self.document.as_ref()?.session.stations;
-        let [num_p, num_q] = [Edge::P, Edge::Q].map(|edge| {
-            let of_edge = stations.iter().filter(|station| station.edge == Some(edge));
-            let (used, given_up): (Vec<_>, Vec<_>) = of_edge.partition(|station| station.enabled);
-            used.len() + given_up.len() / 2
-        });
+        let [num_p, num_q] =
+            [Edge::P, Edge::Q].map(|edge| stations.iter().filter(|station| station.edge == Some(edge)).count());
         match () {
             () if num_p + 2 <= num_q => Some(Edge::P),
             () if num_q + 2 <= num_p => Some(Edge::Q),
