@@ -9,7 +9,7 @@
 //! where the operator brings the ball into view at every station; a live cell station by station from a guess and what was
 //! measured since ([`next_rough`], [`next_rough_edge`]), such that the target stays in view by itself.
 //!
-//! What stations are planned at is a [`search::Subject`]: a ball ([`ball`]) or a plate's edges ([`plate`]).
+//! What stations are planned at is a `search::Subject`: a ball (`ball`) or a plate's edges (`plate`).
 //!
 //! As everywhere in [`crate::calibrate`], poses are inverted inside for [`Mount::Fixed`], and inverted back at the end.
 
