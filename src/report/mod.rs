@@ -1,6 +1,7 @@
 //! What leaves the program besides sessions: result files, and numbers with as many digits as are true. A result file is
 //! also where a calibration is read from.
 
+mod best_solution;
 pub mod calibration_file;
 mod diagnosis_entry;
 pub mod result_file;
@@ -9,3 +10,4 @@ pub mod tool_frame;
 pub mod verification_file;
 
 pub use crate::text::digits;
+pub use best_solution::best_solution;

@@ -19,6 +19,8 @@ pub mod inspector;
 pub mod persisted;
 pub mod poses;
 pub mod rail;
+pub mod report;
+pub mod save_file;
 pub mod screenshot;
 pub mod shell;
 pub mod software_renderer;

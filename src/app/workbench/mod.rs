@@ -285,6 +285,7 @@ impl Workbench {
             Command::CancelImport => self.cancel_import(),
             Command::ExportPoses(path) => self.export_poses(path),
             Command::ExportProfiles(folder) => self.export_profiles(folder),
+            Command::WriteFile { path, contents } => self.write_file(path, contents),
             Command::SetStationEnabled { station_idx, enabled } => {
                 self.edit_station(station_idx, CellValue::Used(enabled));
             }

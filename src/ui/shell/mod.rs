@@ -28,11 +28,13 @@ use super::import::{self, ImportState};
 use super::persisted::Persisted;
 use super::poses::panel::PosesState;
 use super::rail::{self, Step};
+use super::report::ReportState;
+use super::save_file::{self, SaveFile};
 use super::start::panel::StartState;
 use super::verify::VerifyState;
 use super::{
-    PanelContext, Selection, arcs, capture, compare, diagnosis, inspector, poses, start, status, theme, top_bar,
-    verify, widgets,
+    PanelContext, Selection, arcs, capture, compare, diagnosis, inspector, poses, report, start, status, theme,
+    top_bar, verify, widgets,
 };
 
 /// Height of the bar at the top, points.
@@ -81,12 +83,15 @@ pub struct Shell {
     compare: CompareState,
     diagnosis: DiagnosisState,
     verify: VerifyState,
+    report: ReportState,
     import: ImportState,
     /// Frames until a clipboard that was asked for its text counts as empty.
     paste_patience: Option<u8>,
     persisted: Persisted,
     file_dialog: FileDialog,
     save_path: Option<SavePath>,
+    /// What waits for its path.
+    to_write: Option<SaveFile>,
     is_help_open: bool,
     history: HistoryWindow,
     /// The state of the file on disk whose strip was dismissed.
@@ -138,11 +143,13 @@ impl Shell {
             compare: CompareState::default(),
             diagnosis: DiagnosisState::default(),
             verify: VerifyState::default(),
+            report: ReportState::default(),
             import: ImportState::default(),
             paste_patience: None,
             persisted,
             file_dialog: FileDialog::default(),
             save_path: None,
+            to_write: None,
             is_help_open: false,
             history: HistoryWindow::default(),
             dismissed_on_disk: None,
@@ -258,6 +265,9 @@ impl Shell {
         for command in commands {
             self.request(command);
         }
+        if let Some(file) = save_file::take(&ctx) {
+            self.ask_where_to_save(file);
+        }
         if std::mem::take(&mut self.is_closing_again) {
             ctx.send_viewport_cmd(ViewportCommand::Close);
         }
@@ -286,8 +296,8 @@ impl Shell {
             let num_pose_remarks = self.poses.num_remarks(&self.workbench, self.selection.method);
             rail::show(ui, &self.workbench, &self.selection, num_pose_remarks, self.step, actions);
         });
-        // The live cell needs the room, and shows what there is to inspect itself.
-        let has_inspector = self.persisted.inspector_open && self.step != Step::Capture;
+        // The live cell and the report need the room, and show what there is to inspect themselves.
+        let has_inspector = self.persisted.inspector_open && !matches!(self.step, Step::Capture | Step::Report);
         if has_inspector && self.workbench.document().is_some() {
             let beside = surface.inner_margin(Margin { left: 16, right: 8, top: 0, bottom: 0 });
             Panel::right("inspector").resizable(false).exact_size(INSPECTOR_WIDTH).frame(beside).show(ui, |ui| {
@@ -319,6 +329,7 @@ impl Shell {
                 Step::Compare => compare::show(ui, &mut context, &mut self.compare),
                 Step::Diagnosis => diagnosis::show(ui, &mut context, &mut self.diagnosis),
                 Step::Verify => verify::show(ui, &mut context, &mut self.verify),
+                Step::Report => report::show(ui, &mut context, &mut self.report),
             }
         });
     }

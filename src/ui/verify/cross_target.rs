@@ -13,7 +13,7 @@ use crate::verify::{StationError, TargetEvidence};
 
 use super::distances::{nothing_yet, select_cell};
 use super::marks::Mark;
-use super::panel::{View, name_field};
+use super::panel::View;
 
 /// Width of the column of calibrations, points.
 const NAME_WIDTH: f32 = 260.0;
@@ -313,7 +313,7 @@ fn further_list(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut CrossTa
                         ui.horizontal(|ui| {
                             let field =
                                 ui.add(TextEdit::singleline(&mut text).margin(vec2(8.0, 4.0)).desired_width(220.0));
-                            name_field(&field, &words::name_of(&further.name), &text);
+                            widgets::name_field(&field, &words::name_of(&further.name), &text);
                             if field.changed() {
                                 state.renaming = Some((further_idx, text.clone()));
                             }

@@ -11,7 +11,6 @@ use crate::scan::PlaneFit;
 use crate::text::workpiece as words;
 use crate::ui::verify::histogram::{self, Series};
 use crate::ui::verify::marks::Mark;
-use crate::ui::verify::panel::name_field;
 use crate::ui::widgets::tables::{head, number_cell, number_head, table};
 use crate::ui::{PanelContext, theme, widgets};
 use crate::verify::Figures;
@@ -213,7 +212,7 @@ fn name_cell(ui: &mut Ui, context: &mut PanelContext<'_>, name: &str, idx: usize
             .desired_width(30.0)
             .char_limit(40),
     );
-    name_field(&field, &words::region_name_field(name), &text);
+    widgets::name_field(&field, &words::region_name_field(name), &text);
     if field.changed() {
         ask(context, ScanCommand::RenameRegion(idx, text));
     }
