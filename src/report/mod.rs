@@ -3,6 +3,7 @@
 
 pub mod calibration_file;
 mod diagnosis_entry;
+pub mod document;
 pub mod result_file;
 pub mod scan_file;
 pub mod tool_frame;
