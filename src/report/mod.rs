@@ -2,11 +2,13 @@
 //! also where a calibration is read from.
 
 pub mod calibration_file;
+pub mod compare;
 mod diagnosis_entry;
 pub mod document;
 pub mod result_file;
 pub mod scan_file;
 pub mod tool_frame;
+pub mod verification;
 pub mod verification_file;
 
 pub use crate::text::digits;

@@ -2,11 +2,11 @@
 
 use nalgebra::Matrix4;
 
-use crate::app::compare::{self, Difference, Improvement, PublishedRow, ScatterEllipse, TruthDistance};
 use crate::calibrate::{
     Edge, Method, MethodResult, Mount, PlateFound, PlatePoint, Solution, StationSolution, solution_of,
 };
 use crate::geometry::Vec3;
+use crate::report::compare::{self, Difference, Improvement, PublishedRow, ScatterEllipse, TruthDistance};
 use crate::session::{Capture, Session, Station, Target};
 use crate::text::edges::edge_name;
 

@@ -3,8 +3,8 @@
 use egui::{Align, Button, Frame, Layout, Margin, RichText, Ui, vec2};
 
 use crate::app::Command;
-use crate::app::compare::Improvement;
 use crate::calibrate::verdict::{GOOD_UP_TO_MM, USABLE_UP_TO_MM};
+use crate::report::compare::Improvement;
 use crate::text::compare as text;
 use crate::text::diagnosis_panel as next_words;
 use crate::text::methods::{method_name, method_short_name, verdict_mark, verdict_name};
