@@ -18,6 +18,7 @@ pub mod import;
 pub mod import_cli;
 pub mod methods;
 pub mod poses;
+pub mod report;
 pub mod report_panel;
 pub mod shell;
 pub mod start;
