@@ -21,6 +21,7 @@ pub mod poses;
 pub mod rail;
 pub mod report;
 pub mod save_file;
+pub mod save_picture;
 pub mod screenshot;
 pub mod shell;
 pub mod software_renderer;
