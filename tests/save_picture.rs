@@ -62,7 +62,8 @@ fn elements(svg: &str) -> Result<Vec<String>, String> {
         let name = tag.split([' ', '/']).find(|part| !part.is_empty()).unwrap_or_default().to_owned();
         if tag.starts_with('?') {
             continue;
-        } else if tag.starts_with('/') {
+        }
+        if tag.starts_with('/') {
             let expected = open.pop();
             if expected.as_ref() != Some(&name) {
                 return Err(format!("found the end of {name}, expected that of {expected:?}"));
