@@ -19,6 +19,7 @@ pub mod import_cli;
 pub mod methods;
 pub mod poses;
 pub mod report;
+pub mod report_cli;
 pub mod report_panel;
 pub mod shell;
 pub mod start;
