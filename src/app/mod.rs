@@ -3,12 +3,10 @@
 
 pub mod cell;
 pub mod command;
-pub mod compare;
 pub mod document;
 pub mod jobs;
 pub mod recovery;
 pub mod study;
-pub mod verification;
 pub mod workbench;
 
 pub use cell::{CellCommand, CellSettings, CellView};

@@ -150,6 +150,14 @@ pub enum ExportError {
 /// # Errors
 /// [`ExportError::Exists`] unless `overwrite`, [`ExportError::Unwritable`].
 pub fn write_text(path: &Path, text: &str, overwrite: bool) -> Result<(), ExportError> {
+    write_bytes(path, text.as_bytes(), overwrite)
+}
+
+/// Writes bytes to a file of their own.
+///
+/// # Errors
+/// As for [`write_text`].
+pub fn write_bytes(path: &Path, bytes: &[u8], overwrite: bool) -> Result<(), ExportError> {
     let file = || path.display().to_string();
     let mut options = fs::OpenOptions::new();
     options.write(true);
@@ -158,7 +166,7 @@ pub fn write_text(path: &Path, text: &str, overwrite: bool) -> Result<(), Export
     } else {
         options.create_new(true)
     };
-    let written = options.open(path).and_then(|mut opened| opened.write_all(text.as_bytes()));
+    let written = options.open(path).and_then(|mut opened| opened.write_all(bytes));
     written.map_err(|error| match error.kind() {
         io::ErrorKind::AlreadyExists => ExportError::Exists { file: file() },
         _ => ExportError::Unwritable { file: file(), problem: error.to_string() },

@@ -6,12 +6,12 @@ use egui::{
 
 use crate::app::Command;
 use crate::calibrate::{Method, Mount};
+use crate::report::comparison::{Column, ErrorReference, MethodTable, Row};
 use crate::text::compare as text;
 use crate::text::methods::{method_name, method_short_name};
 use crate::ui::figures::std_text;
 use crate::ui::{Selection, charts, theme, widgets};
 
-use super::model::{Column, ErrorReference, MethodTable, Row};
 use super::paper;
 use super::table::{RowCells, coordinate, tint};
 

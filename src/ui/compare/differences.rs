@@ -3,11 +3,11 @@
 use egui::{Align2, Color32, Frame, Margin, Ui};
 
 use crate::calibrate::Method;
+use crate::report::comparison::DifferenceRow;
 use crate::text::compare as text;
 use crate::text::methods::method_short_name;
 use crate::ui::{theme, widgets};
 
-use super::model::DifferenceRow;
 use super::table::RowCells;
 
 /// Up to this many standard deviations two calibrations agree.

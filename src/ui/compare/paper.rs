@@ -4,11 +4,11 @@ use egui::{Align2, Color32, FontId, Ui, pos2, vec2};
 
 use crate::app::Command;
 use crate::calibrate::Method;
+use crate::report::comparison::{ErrorReference, MethodTable, Row};
 use crate::text::compare as text;
 use crate::ui::{Selection, theme, widgets};
 
 use super::cards::station_cell;
-use super::model::{ErrorReference, MethodTable, Row};
 use super::table::{RowCells, coordinate, tint};
 
 /// Height of one of a station's four lines.

@@ -3,10 +3,10 @@
 use egui::{Align, Align2, Color32, Layout, Ui};
 
 use crate::calibrate::Method;
+use crate::report::comparison::PublishedTable;
 use crate::text::compare as text;
 use crate::ui::{theme, widgets};
 
-use super::model::PublishedTable;
 use super::table::{RowCells, coordinate, tint};
 
 /// Parts of a row: station, three centres, three printed errors, three recomputed errors.

@@ -1,12 +1,12 @@
-//! What the comparison draws, made without egui from the session and the results.
+//! The methods side by side: what the window and a report show of a session and its results.
 
 use nalgebra::Matrix4;
 
-use crate::app::compare::{self, Difference, Improvement, PublishedRow, ScatterEllipse, TruthDistance};
 use crate::calibrate::{
     Edge, Method, MethodResult, Mount, PlateFound, PlatePoint, Solution, StationSolution, solution_of,
 };
 use crate::geometry::Vec3;
+use crate::report::compare::{self, Difference, Improvement, PublishedRow, ScatterEllipse, TruthDistance};
 use crate::session::{Capture, Session, Station, Target};
 use crate::text::edges::edge_name;
 
@@ -32,7 +32,6 @@ pub enum ErrorReference {
 }
 
 /// What a method says about a station, or about a point on a plate's edge.
-#[expect(clippy::struct_field_names, reason = "every name carries its unit")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UsedStation {
     /// Ball, tip or edge point in the sensor frame of the capture, mm.
@@ -193,9 +192,9 @@ impl PublishedTable {
     }
 }
 
-/// All that the panel draws.
+/// All that is shown.
 #[derive(Clone, Debug, PartialEq)]
-pub struct CompareModel {
+pub struct Comparison {
     /// What was measured; the wording depends on it.
     pub target: Target,
     /// One column a method, in [`COLUMN_ORDER`].
@@ -208,7 +207,7 @@ pub struct CompareModel {
     pub published: Option<PublishedTable>,
 }
 
-impl CompareModel {
+impl Comparison {
     /// From a session and what the methods made of it.
     #[must_use]
     pub fn new(session: &Session, results: &[MethodResult]) -> Self {
@@ -324,5 +323,4 @@ fn differences(results: &[MethodResult]) -> Vec<DifferenceRow> {
 }
 
 #[cfg(test)]
-#[path = "model_tests.rs"]
 mod tests;
