@@ -15,6 +15,7 @@ pub mod document;
 pub mod edges;
 pub mod edits;
 pub mod import;
+pub mod import_bag;
 pub mod import_cli;
 pub mod methods;
 pub mod poses;
