@@ -3,9 +3,9 @@
 //! Prints the tables of `docs/accuracy.md`. Seeds are fixed, so anyone gets the same figures.
 #![allow(clippy::expect_used, reason = "a benchmark that cannot run must stop")]
 
-use handeye::app::compare::distance_from_truth;
 use handeye::calibrate::{Method, Side, Solution, solve};
 use handeye::geometry::stats;
+use handeye::report::compare::distance_from_truth;
 use handeye::session::{Session, ball_problem, measure};
 use handeye::simulate::{Dirt, SimulationOptions, simulate};
 use handeye::text;

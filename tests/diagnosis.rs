@@ -1,10 +1,10 @@
 //! Every fault that `handeye simulate --fault` makes is diagnosed by its name first, and a clean session is left alone.
 #![expect(clippy::expect_used, reason = "a test that cannot run must fail")]
 
-use handeye::app::compare::distance_from_truth;
 use handeye::calibrate::{Edge, Method, MethodResult, Mount, best_available, solve_all};
 use handeye::diagnose::{Case, Diagnosis, Fault as Found, Remedy, Severity, diagnose, diagnose_any, remedy};
 use handeye::geometry::{Rigid, Transform, Vec3, stats};
+use handeye::report::compare::distance_from_truth;
 use handeye::session::{Session, ball_problem, measure, parse, problem, samples};
 use handeye::simulate::{Dirt, Fault, SimulationOptions, simulate};
 use handeye::watch::Unwatched;

@@ -1,10 +1,10 @@
 //! The methods on simulated sessions, against their truth.
 #![expect(clippy::expect_used, reason = "a test that finds nothing to check must fail")]
 
-use handeye::app::compare::distance_from_truth;
 use handeye::calibrate::verdict::judge;
 use handeye::calibrate::{BallProblem, Method, Mount, SideChoice, Solution, SolveError, Verdict, Warning, solve};
 use handeye::geometry::{Transform, Vec3, so3, stats};
+use handeye::report::compare::distance_from_truth;
 use handeye::session::{Session, ball_problem, measure};
 use handeye::simulate::{Dirt, SimulationOptions, simulate};
 use handeye::watch::Unwatched;

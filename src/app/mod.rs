@@ -3,7 +3,6 @@
 
 pub mod cell;
 pub mod command;
-pub mod compare;
 pub mod document;
 pub mod jobs;
 pub mod recovery;

@@ -2,7 +2,9 @@
 //! also where a calibration is read from.
 
 pub mod calibration_file;
+pub mod compare;
 mod diagnosis_entry;
+pub mod figure;
 pub mod result_file;
 pub mod scan_file;
 pub mod tool_frame;

@@ -4,11 +4,11 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use handeye::app::cell::CellCommand;
-use handeye::app::compare::distance_from_truth;
 use handeye::app::{Command, Workbench};
 use handeye::calibrate::best_available;
 use handeye::device::RobotKind;
 use handeye::device::sim::SimOptions;
+use handeye::report::compare::distance_from_truth;
 use handeye::scene::PartKind;
 use handeye::session::{Edge, Reading, Target};
 

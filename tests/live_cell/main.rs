@@ -7,11 +7,11 @@ mod edges;
 use std::time::Duration;
 
 use handeye::app::cell::{Activity, CellCommand, StationRoutine};
-use handeye::app::compare::distance_from_truth;
 use handeye::app::{Command, NoticeKind, Workbench};
 use handeye::calibrate::verdict::GOOD_UP_TO_MM;
 use handeye::device::sim::{Fault, FaultSpec, Head, SimCell, SimOptions};
 use handeye::device::{LinkState, MotionRefusal, RobotKind, RoutineEnd, SearchPhase, SensorKind, WorkspaceBox};
+use handeye::report::compare::distance_from_truth;
 use handeye::session::{Edit, Row, SetupField, Target};
 use handeye::ui::capture::model::Outlook;
 

@@ -3,9 +3,9 @@
 
 use std::fmt::Write as _;
 
-use crate::app::compare::published_rows;
 use crate::calibrate::{Method, MethodResult, Solution};
 use crate::geometry::Vec3;
+use crate::report::compare::published_rows;
 use crate::report::digits::fixed;
 use crate::session::Session;
 use crate::text;

@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
-use crate::app::compare::{distance_from_truth, improvement, maximum_error_mm};
 use crate::calibrate::{Method, MethodResult, Mount, Solution, Uncertainty, best_available};
 use crate::diagnose::{Diagnosis, verdict_with};
 use crate::geometry::{Flange, Sensor, Transform};
+use crate::report::compare::{distance_from_truth, improvement, maximum_error_mm};
 use crate::report::digits::{decimals_for, fixed, signed};
 use crate::session::{Session, Target};
 use crate::text;

@@ -8,7 +8,7 @@ use crate::text::methods::method_short_name;
 use crate::ui::charts::{self, Chart, Extent, LegendEntry, LegendGlyph};
 use crate::ui::{theme, widgets};
 
-use super::model::{ErrorReference, MethodTable};
+use crate::report::compare::model::{ErrorReference, MethodTable};
 
 /// Which errors the bars show.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

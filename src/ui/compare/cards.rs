@@ -8,12 +8,12 @@ use crate::app::Command;
 use crate::calibrate::{Method, Mount};
 use crate::text::compare as text;
 use crate::text::methods::{method_name, method_short_name};
-use crate::ui::figures::std_text;
+use crate::text::typeset::std_text;
 use crate::ui::{Selection, charts, theme, widgets};
 
-use super::model::{Column, ErrorReference, MethodTable, Row};
 use super::paper;
 use super::table::{RowCells, coordinate, tint};
+use crate::report::compare::model::{Column, ErrorReference, MethodTable, Row};
 
 /// Height of a card's head.
 const HEAD_HEIGHT: f32 = 34.0;

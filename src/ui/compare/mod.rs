@@ -3,7 +3,6 @@
 mod bars;
 mod cards;
 mod differences;
-mod model;
 mod panel;
 mod paper;
 mod published;

@@ -14,9 +14,9 @@ use crate::ui::{PanelContext, theme, widgets};
 
 use super::bars::{self, BarSource};
 use super::cards::{self, CardOptions};
-use super::model::{COLUMN_ORDER, Column, CompareModel, ErrorReference, MethodTable};
 use super::scatter::{self, ScatterView};
 use super::{differences, published, table};
+use crate::report::compare::model::{COLUMN_ORDER, Column, CompareModel, ErrorReference, MethodTable};
 
 /// A card narrower than this clips its numbers, points.
 const MIN_CARD_WIDTH: f32 = 440.0;

@@ -10,7 +10,7 @@ use crate::ui::charts::{self, Canvas, Chart, Extent};
 use crate::ui::{theme, widgets};
 
 use super::bars::method_legend;
-use super::model::MethodTable;
+use crate::report::compare::model::MethodTable;
 
 /// Whether each view is fitted to its data.
 #[derive(Clone, Copy, Debug)]

@@ -3,13 +3,13 @@
 use egui::{Align, Button, Frame, Layout, Margin, RichText, Ui, vec2};
 
 use crate::app::Command;
-use crate::app::compare::Improvement;
 use crate::calibrate::verdict::{GOOD_UP_TO_MM, USABLE_UP_TO_MM};
+use crate::report::compare::Improvement;
 use crate::text::compare as text;
 use crate::text::diagnosis_panel as next_words;
 use crate::text::methods::{method_name, method_short_name, verdict_mark, verdict_name};
+use crate::text::typeset::std_text;
 use crate::ui::actions::Action;
-use crate::ui::figures::std_text;
 use crate::ui::{PanelContext, Step, theme, widgets};
 
 use super::model::{Band, NextStep};

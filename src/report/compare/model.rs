@@ -1,14 +1,15 @@
-//! What the comparison draws, made without egui from the session and the results.
+//! The comparison as tables, made from the session and the results; the window, reports and figures share it.
 
 use nalgebra::Matrix4;
 
-use crate::app::compare::{self, Difference, Improvement, PublishedRow, ScatterEllipse, TruthDistance};
 use crate::calibrate::{
     Edge, Method, MethodResult, Mount, PlateFound, PlatePoint, Solution, StationSolution, solution_of,
 };
 use crate::geometry::Vec3;
 use crate::session::{Capture, Session, Station, Target};
 use crate::text::edges::edge_name;
+
+use super::{self as compare, Difference, Improvement, PublishedRow, ScatterEllipse, TruthDistance};
 
 /// The methods from left to right: the paper's first, then the answer to use; the published stop by choice.
 pub const COLUMN_ORDER: [Method; 7] = [
