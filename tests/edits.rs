@@ -500,7 +500,7 @@ fn further_targets_are_added_named_used_and_removed() {
 fn another_session_gives_all_of_its_targets() {
     let other = Edit::Several(vec![tip("teeth", 1), tip("tip", 2)]).apply(&session(&[1, 1])).expect("fits");
     let here = tip("tip", 1).apply(&session(&[1])).expect("fits");
-    let edit = handeye::app::verification::adding_targets_of(other.clone(), "part");
+    let edit = handeye::report::verification::adding_targets_of(other.clone(), "part");
     assert_eq!(handeye::text::edits::edit_label(&edit, &here), "add 3 targets");
     let all = edit.apply(&here).expect("fits");
     let sizes: Vec<(&str, usize)> =

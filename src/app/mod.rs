@@ -7,7 +7,6 @@ pub mod document;
 pub mod jobs;
 pub mod recovery;
 pub mod study;
-pub mod verification;
 pub mod workbench;
 
 pub use cell::{CellCommand, CellSettings, CellView};

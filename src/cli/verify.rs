@@ -4,10 +4,10 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use crate::app::verification::{adding_targets_of, verification};
 use crate::calibrate::MethodResult;
 use crate::report::calibration_file::read_calibration;
 use crate::report::digits::{fixed, signed};
+use crate::report::verification::{adding_targets_of, verification};
 use crate::report::verification_file::{Checked, verification_file};
 use crate::session::{self, Session, measure};
 use crate::text::verify as words;

@@ -2,12 +2,18 @@
 //! also where a calibration is read from.
 
 pub mod calibration_file;
+pub mod checksum;
 pub mod compare;
+pub mod comparison;
 mod diagnosis_entry;
+pub mod document;
+pub mod evidence;
 pub mod figure;
+pub mod judgement;
 pub mod result_file;
 pub mod scan_file;
 pub mod tool_frame;
+pub mod verification;
 pub mod verification_file;
 
 pub use crate::text::digits;

@@ -16,7 +16,7 @@ pub mod table;
 
 pub use edit::{Edit, EditRefusal, Place, Row, SetupField};
 pub use error::SessionError;
-pub use format::{load, parse, save, to_json};
+pub use format::{load, load_with_bytes, parse, save, to_json};
 pub use history::{History, new_gesture};
 pub use measure::{
     Measured, NotABallSession, NothingToSolve, ScanLine, ScanRange, ball_problem, measure, problem, problem_of, sought,

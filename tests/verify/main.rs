@@ -2,9 +2,9 @@
 #![expect(clippy::expect_used, reason = "helpers of tests may fail as tests do")]
 #![expect(clippy::cast_precision_loss, reason = "a handful of points")]
 
-use handeye::app::verification::{SolvedTarget, solved_further, verification};
 use handeye::calibrate::{Edge, Method, Problem, best_available};
 use handeye::geometry::{Flange, Sensor, Transform, Vec3, so3};
+use handeye::report::verification::{SolvedTarget, solved_further, verification};
 use handeye::scene::PartKind;
 use handeye::session::{self, measure, samples};
 use handeye::simulate::{SimulationOptions, SimulationTarget, simulate};

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::app::jobs::JobOutcome;
 use crate::app::study::Study;
-use crate::app::verification::{adding_targets_of, solved_further, verification};
+use crate::report::verification::{adding_targets_of, solved_further, verification};
 use crate::session::{self, Session, SessionError};
 use crate::text::verify as words;
 use crate::verify::{Calibration, Origin, Verification};

@@ -10,8 +10,8 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use crate::calibrate::validation::{Bootstrap, bootstrap};
 use crate::calibrate::{Method, MethodResult, Problem, SolveError, best_available};
-use crate::diagnose::{Diagnosis, diagnose_any};
-use crate::plan::{Limits, Plan, next_stations};
+use crate::diagnose::Diagnosis;
+use crate::report::evidence::Examined;
 use crate::report::result_file::{Examination, result_file};
 use crate::session::{self, Session, measure};
 use crate::text::cli::no_such_station;
@@ -123,40 +123,34 @@ fn solved(args: &SolveArgs, session: &Session) -> Result<ExitCode, String> {
         format!("{:#}\n", result_file(session, &results, examination.as_ref()))
     } else {
         let section = examination.as_ref().map(|found| diagnosis::section(session, &results, found));
-        tables::tables(session, &results, found.as_ref().map(|found| &found.diagnosis)) + &section.unwrap_or_default()
+        tables::tables(session, &results, found.as_ref().map(|found| &found.examined.diagnosis))
+            + &section.unwrap_or_default()
     };
-    Ok(printed(&text, session, &results, found.as_ref().map(|found| &found.diagnosis)))
+    Ok(printed(&text, session, &results, found.as_ref().map(|found| &found.examined.diagnosis)))
 }
 
 /// What was found out beside the results.
 struct Found {
-    diagnosis: Diagnosis,
-    plan: Option<Plan>,
+    examined: Examined,
     bootstrap: Option<Bootstrap>,
 }
 
 impl Found {
     fn new(args: &SolveArgs, session: &Session, problem: &Problem, results: &[MethodResult]) -> Result<Self, String> {
-        /// One pose is a hint; `handeye plan` plans more.
-        const NUM_PLANNED: usize = 1;
         /// The same session gives the same output.
         const SEED: u64 = 1;
-        let diagnosis = watched("examining", |progress| diagnose_any(session, problem, results, progress))?;
-        let best = best_available(results);
-        let bootstrap = match best.zip(args.bootstrap) {
+        let examined = watched("examining", |progress| Examined::new(session, problem, results, progress))?;
+        let bootstrap = match best_available(results).zip(args.bootstrap) {
             Some((solution, num_draws)) => {
                 Some(watched("drawing stations", |progress| bootstrap(solution, num_draws as usize, SEED, progress))?)
             }
             None => None,
         };
-        let plan = best
-            .filter(|_| diagnosis.allows_planning())
-            .and_then(|solution| next_stations(solution, &Limits::default(), NUM_PLANNED).ok());
-        Ok(Self { diagnosis, plan, bootstrap })
+        Ok(Self { examined, bootstrap })
     }
 
     const fn examination(&self) -> Examination<'_> {
-        Examination { diagnosis: &self.diagnosis, plan: self.plan.as_ref(), bootstrap: self.bootstrap.as_ref() }
+        Examination { bootstrap: self.bootstrap.as_ref(), ..self.examined.examination() }
     }
 }
 

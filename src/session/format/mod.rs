@@ -13,6 +13,7 @@ mod write;
 
 use std::fs;
 use std::path::Path;
+use std::time::SystemTime;
 
 use crate::session::check::Finding;
 use crate::session::error::on_one_line;
@@ -61,6 +62,23 @@ pub fn load_with_notes(path: &Path) -> Result<Loaded, SessionError> {
 /// # Errors
 /// As for [`load`].
 pub fn load_with_stamp(path: &Path) -> Result<(Loaded, Stamp), SessionError> {
+    let (bytes, modified) = read(path)?;
+    // The time is from before the reading: what is written to the file meanwhile counts as a change.
+    let stamp = Stamp::new(&bytes, modified);
+    Ok((parse_with_notes(&bytes, &file_name(path))?, stamp))
+}
+
+/// Reads a session file, with its bytes as they are on the disk.
+///
+/// # Errors
+/// As for [`load`].
+pub fn load_with_bytes(path: &Path) -> Result<(Session, Vec<u8>), SessionError> {
+    let (bytes, _) = read(path)?;
+    Ok((parse(&bytes, &file_name(path))?, bytes))
+}
+
+/// The bytes of a file that may be a session, and when it was changed last, where the system tells.
+fn read(path: &Path) -> Result<(Vec<u8>, Option<SystemTime>), SessionError> {
     let file = file_name(path);
     let unreadable = |error: std::io::Error| SessionError::Unreadable {
         file: file.clone(),
@@ -77,10 +95,7 @@ pub fn load_with_stamp(path: &Path) -> Result<(Loaded, Stamp), SessionError> {
     if metadata.len() > MAX_BYTES {
         return Err(SessionError::TooLarge { file, found_bytes: metadata.len(), limit_bytes: MAX_BYTES });
     }
-    let bytes = fs::read(path).map_err(unreadable)?;
-    // The time is from before the reading: what is written to the file meanwhile counts as a change.
-    let stamp = Stamp::new(&bytes, metadata.modified().ok());
-    Ok((parse_with_notes(&bytes, &file)?, stamp))
+    Ok((fs::read(path).map_err(unreadable)?, metadata.modified().ok()))
 }
 
 /// Reads a session from the bytes of a file; `origin` names it in refusals.

@@ -19,6 +19,7 @@ pub mod import;
 pub mod import_cli;
 pub mod methods;
 pub mod poses;
+pub mod report;
 pub mod shell;
 pub mod start;
 pub mod tool_frame;

@@ -3,12 +3,11 @@
 use egui::{Align2, Id, Rect, Ui, pos2, vec2};
 
 use crate::calibrate::Method;
+use crate::report::comparison::{ErrorReference, MethodTable};
 use crate::text::compare as text;
 use crate::text::methods::method_short_name;
 use crate::ui::charts::{self, Chart, Extent, LegendEntry, LegendGlyph};
 use crate::ui::{theme, widgets};
-
-use crate::report::compare::model::{ErrorReference, MethodTable};
 
 /// Which errors the bars show.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

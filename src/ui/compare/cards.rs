@@ -6,6 +6,7 @@ use egui::{
 
 use crate::app::Command;
 use crate::calibrate::{Method, Mount};
+use crate::report::comparison::{Column, ErrorReference, MethodTable, Row};
 use crate::text::compare as text;
 use crate::text::methods::{method_name, method_short_name};
 use crate::text::typeset::std_text;
@@ -13,7 +14,6 @@ use crate::ui::{Selection, charts, theme, widgets};
 
 use super::paper;
 use super::table::{RowCells, coordinate, tint};
-use crate::report::compare::model::{Column, ErrorReference, MethodTable, Row};
 
 /// Height of a card's head.
 const HEAD_HEIGHT: f32 = 34.0;

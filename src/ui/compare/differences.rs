@@ -3,12 +3,12 @@
 use egui::{Align2, Color32, Frame, Margin, Ui};
 
 use crate::calibrate::Method;
+use crate::report::comparison::DifferenceRow;
 use crate::text::compare as text;
 use crate::text::methods::method_short_name;
 use crate::ui::{theme, widgets};
 
 use super::table::RowCells;
-use crate::report::compare::model::DifferenceRow;
 
 /// Up to this many standard deviations two calibrations agree.
 const AGREE_WITHIN_STDS: f64 = 2.0;

@@ -6,17 +6,18 @@ use egui::{Align, Button, Layout, ScrollArea, Ui, UiBuilder, vec2};
 
 use crate::app::{Document, Results};
 use crate::calibrate::Method;
+use crate::report::comparison::{COLUMN_ORDER, Column, Comparison, ErrorReference, MethodTable};
+use crate::report::judgement::Judgement;
 use crate::session::Target;
 use crate::text::compare as text;
 use crate::text::methods::{method_description, method_short_name};
-use crate::ui::verdict::{self, Band, NextStep};
+use crate::ui::verdict::{self, NextStep};
 use crate::ui::{PanelContext, theme, widgets};
 
 use super::bars::{self, BarSource};
 use super::cards::{self, CardOptions};
 use super::scatter::{self, ScatterView};
 use super::{differences, published, table};
-use crate::report::compare::model::{COLUMN_ORDER, Column, CompareModel, ErrorReference, MethodTable};
 
 /// A card narrower than this clips its numbers, points.
 const MIN_CARD_WIDTH: f32 = 440.0;
@@ -42,17 +43,17 @@ pub struct CompareState {
     is_explained: bool,
     bar_source: BarSource,
     scatter: ScatterView,
-    model: Option<((u64, u64), Rc<CompareModel>)>,
+    model: Option<((u64, u64), Rc<Comparison>)>,
     from_top: widgets::FromTop,
 }
 
 impl CompareState {
-    fn model(&mut self, document: &Document, results: &Results) -> Rc<CompareModel> {
+    fn model(&mut self, document: &Document, results: &Results) -> Rc<Comparison> {
         let revisions = (document.revision, results.revision);
         match &self.model {
             Some((known, model)) if *known == revisions => Rc::clone(model),
             _ => {
-                let model = Rc::new(CompareModel::new(&document.session, &results.methods));
+                let model = Rc::new(Comparison::new(&document.session, &results.methods));
                 self.model = Some((revisions, Rc::clone(&model)));
                 model
             }
@@ -61,7 +62,7 @@ impl CompareState {
 
     /// The paper's two methods; the bundle as well where three cards have room beside each other, or where one of
     /// the two has no table to show.
-    fn shown(&self, model: &CompareModel, width: f32) -> Vec<Method> {
+    fn shown(&self, model: &Comparison, width: f32) -> Vec<Method> {
         self.shown.clone().unwrap_or_else(|| {
             let has_failed = model.columns.iter().take(2).any(|column| column.outcome.is_err());
             let count = if has_failed || cards_a_row(width, MIN_CARD_WIDTH) >= 3 { 3 } else { 2 };
@@ -109,7 +110,7 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut CompareStat
         // The diagnosis follows the results; until it is there, or once it is out of date, the figures speak alone.
         let diagnosis = workbench.current_diagnosis();
         let plan = workbench.current_plan();
-        let band = Band::new(&document.session, &results.methods, diagnosis);
+        let band = Judgement::new(&document.session, &results.methods, diagnosis);
         let next = NextStep::new(&document.session, diagnosis, plan);
         let improvement = model.improvement.as_ref();
         let is_explained = &mut state.is_explained;
@@ -142,7 +143,7 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut CompareStat
     ui.advance_cursor_after_rect(area);
 }
 
-fn toggles(ui: &mut Ui, model: &CompareModel, shown: &[Method], state: &mut CompareState) {
+fn toggles(ui: &mut Ui, model: &Comparison, shown: &[Method], state: &mut CompareState) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(5.0, 6.0);
         ui.spacing_mut().button_padding.x = 6.0;
@@ -178,7 +179,7 @@ fn toggles(ui: &mut Ui, model: &CompareModel, shown: &[Method], state: &mut Comp
 
 fn method_cards(
     ui: &mut Ui,
-    model: &CompareModel,
+    model: &Comparison,
     shown: &[Method],
     context: &mut PanelContext<'_>,
     state: &CompareState,

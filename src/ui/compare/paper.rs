@@ -4,12 +4,12 @@ use egui::{Align2, Color32, FontId, Ui, pos2, vec2};
 
 use crate::app::Command;
 use crate::calibrate::Method;
+use crate::report::comparison::{ErrorReference, MethodTable, Row};
 use crate::text::compare as text;
 use crate::ui::{Selection, theme, widgets};
 
 use super::cards::station_cell;
 use super::table::{RowCells, coordinate, tint};
-use crate::report::compare::model::{ErrorReference, MethodTable, Row};
 
 /// Height of one of a station's four lines.
 const LINE_HEIGHT: f32 = 18.0;

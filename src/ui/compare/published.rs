@@ -3,11 +3,11 @@
 use egui::{Align, Align2, Color32, Layout, Ui};
 
 use crate::calibrate::Method;
+use crate::report::comparison::PublishedTable;
 use crate::text::compare as text;
 use crate::ui::{theme, widgets};
 
 use super::table::{RowCells, coordinate, tint};
-use crate::report::compare::model::PublishedTable;
 
 /// Parts of a row: station, three centres, three printed errors, three recomputed errors.
 const PARTS: [f32; 10] = [60.0, 72.0, 72.0, 72.0, 76.0, 76.0, 76.0, 66.0, 66.0, 66.0];

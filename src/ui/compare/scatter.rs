@@ -4,13 +4,13 @@
 use egui::{Align2, Id, Stroke, Ui, UiBuilder, vec2};
 
 use crate::calibrate::Method;
+use crate::report::comparison::MethodTable;
 use crate::text::compare as text;
 use crate::text::methods::method_short_name;
 use crate::ui::charts::{self, Canvas, Chart, Extent};
 use crate::ui::{theme, widgets};
 
 use super::bars::method_legend;
-use crate::report::compare::model::MethodTable;
 
 /// Whether each view is fitted to its data.
 #[derive(Clone, Copy, Debug)]

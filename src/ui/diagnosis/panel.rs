@@ -3,8 +3,9 @@
 use egui::{Key, Modifiers, ScrollArea, Sense, Ui, UiBuilder, vec2};
 
 use crate::app::Command;
+use crate::report::judgement::Judgement;
 use crate::text::diagnosis_panel as words;
-use crate::ui::verdict::{self, Band};
+use crate::ui::verdict;
 use crate::ui::{PanelContext, theme, widgets};
 
 use super::model::{Shown, View};
@@ -98,7 +99,7 @@ pub fn show_view(ui: &mut Ui, view: &View<'_>, context: &mut PanelContext<'_>, s
         ui.spacing_mut().item_spacing.y = theme::GAP;
         let top = ui.cursor().top();
         let current = view.diagnosis.value.filter(|_| view.diagnosis.is_current);
-        let band = Band::new(view.session, view.results, current);
+        let band = Judgement::new(view.session, view.results, current);
         let is_explained = &mut state.is_explained;
         verdict::show(ui, band.as_ref(), None, None, !view.results_are_current, is_explained, context);
         if view.is_out_of_date() {

@@ -5,19 +5,20 @@ use egui::{Align, Button, Frame, Layout, Margin, RichText, Ui, vec2};
 use crate::app::Command;
 use crate::calibrate::verdict::{GOOD_UP_TO_MM, USABLE_UP_TO_MM};
 use crate::report::compare::Improvement;
+use crate::report::judgement::Judgement;
 use crate::text::compare as text;
 use crate::text::diagnosis_panel as next_words;
 use crate::text::methods::{method_name, method_short_name, verdict_mark, verdict_name};
-use crate::text::typeset::std_text;
 use crate::ui::actions::Action;
+use crate::text::typeset::std_text;
 use crate::ui::{PanelContext, Step, theme, widgets};
 
-use super::model::{Band, NextStep};
+use super::model::NextStep;
 
 /// Shows the band; `is_explained` toggles the reasons.
 pub fn show(
     ui: &mut Ui,
-    band: Option<&Band>,
+    band: Option<&Judgement>,
     improvement: Option<&Improvement>,
     next: Option<&NextStep>,
     is_out_of_date: bool,
@@ -124,7 +125,7 @@ enum Tone {
 }
 
 impl Words {
-    fn new(band: &Band, improvement: Option<&Improvement>) -> Self {
+    fn new(band: &Judgement, improvement: Option<&Improvement>) -> Self {
         let method = method_short_name(band.method);
         Self {
             verdict: verdict_name(band.verdict),
@@ -186,14 +187,14 @@ fn comparison(improvement: &Improvement) -> Vec<(String, Tone)> {
     words
 }
 
-fn verdict_words(ui: &mut Ui, band: &Band, words: &Words) {
+fn verdict_words(ui: &mut Ui, band: &Judgement, words: &Words) {
     let color = theme::verdict_color_in(theme::palette(ui), band.verdict);
     ui.label(theme::heading(verdict_mark(band.verdict)).color(color));
     ui.label(theme::heading(words.verdict));
     ui.label(theme::strong(&words.method)).on_hover_text(text::verdict_of(method_name(band.method)));
 }
 
-fn headline(ui: &mut Ui, band: &Band, words: &Words) {
+fn headline(ui: &mut Ui, band: &Judgement, words: &Words) {
     let Some([place, figure]) = &words.headline else { return };
     let hover = text::verdict_of(method_name(band.method));
     ui.label(theme::dim(ui, place)).on_hover_text(&hover);
@@ -201,7 +202,7 @@ fn headline(ui: &mut Ui, band: &Band, words: &Words) {
 }
 
 /// The comparison; `is_reversed` where the layout runs from the right.
-fn better_by(ui: &mut Ui, band: &Band, words: &Words, is_reversed: bool) {
+fn better_by(ui: &mut Ui, band: &Judgement, words: &Words, is_reversed: bool) {
     let hint = text::maximum_error_hint(band.method);
     ui.spacing_mut().item_spacing.x = 5.0;
     let palette = theme::palette(ui);
@@ -223,7 +224,7 @@ fn better_by(ui: &mut Ui, band: &Band, words: &Words, is_reversed: bool) {
     }
 }
 
-fn reasons(ui: &mut Ui, band: &Band) {
+fn reasons(ui: &mut Ui, band: &Judgement) {
     let palette = theme::palette(ui);
     ui.add_space(6.0);
     ui.label(format!("{}: {}", text::verdict_of(method_name(band.method)), band.reason));

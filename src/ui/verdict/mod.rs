@@ -5,4 +5,4 @@ mod band;
 mod model;
 
 pub use band::show;
-pub use model::{Band, NextStep, WorkspacePoint};
+pub use model::NextStep;

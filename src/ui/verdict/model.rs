@@ -1,7 +1,6 @@
-//! What the band says, made without egui.
+//! What the band says is to be done next, made without egui.
 
-use crate::calibrate::{Method, MethodResult, Solution, Verdict, best_available};
-use crate::diagnose::{Diagnosis, Reason, Remedy, Severity, verdict_with};
+use crate::diagnose::{Diagnosis, Remedy, Severity};
 use crate::plan::Plan;
 use crate::session::Session;
 use crate::text;
@@ -10,17 +9,6 @@ use crate::ui::widgets;
 
 /// A station that makes the point better known by less than this part is not worth naming.
 const WORTH_NAMING: f64 = 0.03;
-
-/// The point that the headline is about.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WorkspacePoint {
-    /// Where it is along the range axis, mm.
-    pub z_mm: f64,
-    /// Whether the session states that distance; otherwise the point is amid what was seen.
-    pub is_stated: bool,
-    /// Its standard deviation, mm.
-    pub std_mm: f64,
-}
 
 /// What to do next.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,50 +59,5 @@ impl NextStep {
                 &std_text(after_mm),
             ),
         })
-    }
-}
-
-/// The verdict's band.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Band {
-    /// The method that is judged.
-    pub method: Method,
-    /// The verdict.
-    pub verdict: Verdict,
-    /// Its reason in a sentence.
-    pub reason: String,
-    /// How well a point is known.
-    pub workspace_point: Option<WorkspacePoint>,
-    /// Sentence and remedy of each warning.
-    pub warnings: Vec<(String, &'static str)>,
-}
-
-impl Band {
-    /// On the best available solution; `None` without one.
-    #[must_use]
-    pub fn new(session: &Session, results: &[MethodResult], diagnosis: Option<&Diagnosis>) -> Option<Self> {
-        best_available(results).map(|solution| Self::on(session, solution, diagnosis))
-    }
-
-    fn on(session: &Session, solution: &Solution, diagnosis: Option<&Diagnosis>) -> Self {
-        let (verdict, reason) = verdict_with(solution, diagnosis);
-        Self {
-            method: solution.method,
-            verdict,
-            reason: match reason {
-                Reason::Solution(reason) => text::compare::verdict_reason(solution, reason),
-                Reason::Finding(finding) => text::diagnosis::fault_message(&finding.fault, session),
-            },
-            workspace_point: solution.uncertainty.as_ref().map(|uncertainty| WorkspacePoint {
-                z_mm: uncertainty.reference_point_in_sensor_mm.z,
-                is_stated: session.sensor.reference_distance_mm.is_some(),
-                std_mm: uncertainty.workspace_point_std_mm,
-            }),
-            warnings: solution
-                .warnings
-                .iter()
-                .map(|warning| (text::warnings::warning_message(warning), text::warnings::warning_remedy(warning)))
-                .collect(),
-        }
     }
 }

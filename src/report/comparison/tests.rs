@@ -112,7 +112,7 @@ fn results() -> Vec<MethodResult> {
 
 #[test]
 fn rows_are_matched_by_the_stations_index() {
-    let model = CompareModel::new(&session(), &results());
+    let model = Comparison::new(&session(), &results());
     let table = model.columns[0].outcome.as_ref().expect("a table");
     let used: Vec<bool> = table.rows.iter().map(|row| row.used.is_some()).collect();
     assert_eq!(used, [true, false, true]);
@@ -123,7 +123,7 @@ fn rows_are_matched_by_the_stations_index() {
 
 #[test]
 fn the_columns_keep_the_papers_order_and_say_why_one_is_empty() {
-    let model = CompareModel::new(&session(), &results());
+    let model = Comparison::new(&session(), &results());
     let methods: Vec<Method> = model.columns.iter().map(|column| column.method).collect();
     assert_eq!(methods, [Method::BallFixedPoint, Method::BallMaxArc, Method::BallMaxArcStep]);
     let reason = SolveError::TooFewSweeps { found: 0, needed: 3, steps: 3, refusal: None }.to_string();
@@ -132,7 +132,7 @@ fn the_columns_keep_the_papers_order_and_say_why_one_is_empty() {
 
 #[test]
 fn differences_go_from_each_method_to_the_next() {
-    let differences = CompareModel::new(&session(), &results()).differences;
+    let differences = Comparison::new(&session(), &results()).differences;
     assert_eq!(differences.len(), 1);
     assert!((differences[0].difference.workspace_point_mm - 0.2).abs() < 1e-12);
     let in_stds = differences[0].difference.in_stds.expect("both have uncertainties");
@@ -141,7 +141,7 @@ fn differences_go_from_each_method_to_the_next() {
 
 #[test]
 fn without_results_there_is_nothing_to_show() {
-    let model = CompareModel::new(&session(), &[]);
+    let model = Comparison::new(&session(), &[]);
     assert!(model.columns.is_empty() && model.differences.is_empty());
 }
 
@@ -159,7 +159,7 @@ fn solved(kind: crate::scene::PartKind) -> (Session, Vec<MethodResult>) {
 #[test]
 fn a_plates_rows_are_its_points_with_their_edges() {
     let (session, results) = solved(crate::scene::PartKind::Plate);
-    let model = CompareModel::new(&session, &results);
+    let model = Comparison::new(&session, &results);
     let methods: Vec<Method> = model.columns.iter().map(|column| column.method).collect();
     assert_eq!(methods, Method::PLATE);
     for column in &model.columns {
@@ -185,7 +185,7 @@ fn a_plates_rows_are_its_points_with_their_edges() {
 #[test]
 fn a_tips_table_is_that_of_its_stations() {
     let (session, results) = solved(crate::scene::PartKind::Pin);
-    let model = CompareModel::new(&session, &results);
+    let model = Comparison::new(&session, &results);
     assert_eq!(model.columns.len(), 1);
     let table = model.columns[0].outcome.as_ref().expect("a table");
     assert!(!table.is_of_plate && model.improvement.is_none() && model.differences.is_empty());

@@ -1,7 +1,5 @@
 //! Calibrations side by side: how they differ, which is better by how much, and what a paper printed.
 
-pub mod model;
-
 use crate::calibrate::{Method, MethodResult, Solution, solution_of};
 use crate::geometry::Vec3;
 use crate::session::{Published, Truth};

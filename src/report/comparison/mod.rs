@@ -1,4 +1,4 @@
-//! The comparison as tables, made from the session and the results; the window, reports and figures share it.
+//! The methods side by side: what the window and a report show of a session and its results.
 
 use nalgebra::Matrix4;
 
@@ -6,10 +6,9 @@ use crate::calibrate::{
     Edge, Method, MethodResult, Mount, PlateFound, PlatePoint, Solution, StationSolution, solution_of,
 };
 use crate::geometry::Vec3;
+use crate::report::compare::{self, Difference, Improvement, PublishedRow, ScatterEllipse, TruthDistance};
 use crate::session::{Capture, Session, Station, Target};
 use crate::text::edges::edge_name;
-
-use super::{self as compare, Difference, Improvement, PublishedRow, ScatterEllipse, TruthDistance};
 
 /// The methods from left to right: the paper's first, then the answer to use; the published stop by choice.
 pub const COLUMN_ORDER: [Method; 7] = [
@@ -194,9 +193,9 @@ impl PublishedTable {
     }
 }
 
-/// All that the panel draws.
+/// All that is shown.
 #[derive(Clone, Debug, PartialEq)]
-pub struct CompareModel {
+pub struct Comparison {
     /// What was measured; the wording depends on it.
     pub target: Target,
     /// One column a method, in [`COLUMN_ORDER`].
@@ -209,7 +208,7 @@ pub struct CompareModel {
     pub published: Option<PublishedTable>,
 }
 
-impl CompareModel {
+impl Comparison {
     /// From a session and what the methods made of it.
     #[must_use]
     pub fn new(session: &Session, results: &[MethodResult]) -> Self {
@@ -325,5 +324,4 @@ fn differences(results: &[MethodResult]) -> Vec<DifferenceRow> {
 }
 
 #[cfg(test)]
-#[path = "model_tests.rs"]
 mod tests;
