@@ -20,9 +20,9 @@ const TICK_GAP: f64 = 3.5;
 /// Height of the labels of the x axis with the gap above them, points.
 const TICK_HEIGHT: f64 = 11.0;
 /// Height of a title of an axis, points.
-const TITLE_HEIGHT: f64 = 11.0;
-/// Marks of the y axis stand at least this far apart, points.
-const Y_SPACING: f64 = 20.0;
+pub(super) const TITLE_HEIGHT: f64 = 11.0;
+/// Marks of the y axis stand at least this far apart, points; in a low plot closer, so that it has more than one.
+const Y_SPACING: [f64; 3] = [20.0, 14.0, 9.5];
 /// Labels of the x axis have at least this gap between them, points.
 const X_GAP: f64 = 12.0;
 /// A plot is never smaller than this, points.
@@ -59,8 +59,8 @@ pub(super) fn view_in(plot: &Plot, area: &Area, left: f64) -> Extent {
 pub(super) fn draw(plot: &Plot, area: &Area, left: f64, page: &mut Page) {
     let mut rest = *area;
     if let Some(heading) = &plot.heading {
-        let text = shortened(heading, HEADING_SIZE, Weight::Strong, area.width());
-        let mut label = label(&text, [area.min[0], area.min[1] + 0.78 * HEADING_SIZE + 1.0], palette::TEXT);
+        let text = shortened(heading, HEADING_SIZE, Weight::Strong, area.width() - left);
+        let mut label = label(&text, [area.min[0] + left, area.min[1] + 0.78 * HEADING_SIZE + 1.0], palette::TEXT);
         (label.size, label.weight) = (HEADING_SIZE, Weight::Strong);
         page.write(label);
         rest.min[1] += HEADING_HEIGHT;
@@ -110,10 +110,17 @@ impl Frame<'_> {
             return names.iter().enumerate().map(|(idx, name)| (whole(idx), name.clone())).collect();
         }
         let range = self.view.y;
-        let least = (range[1] - range[0]) * Y_SPACING / self.area.height();
-        let least = if self.plot.y.is_whole { least.max(1.0) } else { least };
-        let Some(step) = round_step(least) else { return Vec::new() };
-        multiples(range, step).into_iter().map(|value| (value, tick_label(value, step))).collect()
+        let mut marks = Vec::new();
+        for spacing in Y_SPACING {
+            let least = (range[1] - range[0]) * spacing / self.area.height();
+            let least = if self.plot.y.is_whole { least.max(1.0) } else { least };
+            let Some(step) = round_step(least) else { break };
+            marks = multiples(range, step).into_iter().map(|value| (value, tick_label(value, step))).collect();
+            if marks.len() > 2 {
+                break;
+            }
+        }
+        marks
     }
 
     /// Marks of the x axis: so many that their labels stand clear of each other.
@@ -133,6 +140,9 @@ impl Frame<'_> {
             // Every name, or every n-th where they are too wide to stand side by side.
             let every = ((widest(&all) + 5.0) / points_per_unit).ceil().max(1.0);
             return all.into_iter().filter(|(at, _)| at % every < 0.5).collect();
+        }
+        if self.plot.x.is_logarithmic {
+            return decades(range, points_per_unit);
         }
         let mut least = (range[1] - range[0]) * 24.0 / self.area.width();
         if self.plot.x.is_whole {
@@ -364,8 +374,8 @@ impl Frame<'_> {
                     let (x, middle) = match side {
                         NoteSide::Right => (at[0] + distance, at[1] + slide * 30.0),
                         NoteSide::Left => (at[0] - distance - width, at[1] + slide * 30.0),
-                        NoteSide::Above => (at[0] - width / 2.0 + across, at[1] - distance - 1.0),
-                        NoteSide::Below => (at[0] - width / 2.0 + across, at[1] + distance + 1.0),
+                        NoteSide::Above => (at[0] - width / 2.0 + across, at[1] - distance - 4.0),
+                        NoteSide::Below => (at[0] - width / 2.0 + across, at[1] + distance + 4.0),
                     };
                     let x = x.clamp(room.min[0], (room.max[0] - width).max(room.min[0]));
                     let label = label(&text, [x, on_middle(middle, TEXT_SIZE)], note.color);
@@ -383,6 +393,20 @@ impl Frame<'_> {
         }
         best.map(|(_, label)| label)
     }
+}
+
+/// Marks of an axis whose values are powers of ten: 1, 2 and 5 times each power where there is room, else the powers.
+fn decades([low, high]: [f64; 2], points_per_unit: f64) -> Vec<(f64, String)> {
+    const LEAST_ROOM: f64 = 120.0;
+    let factors: &[f64] = if points_per_unit > LEAST_ROOM { &[1.0, 2.0, 5.0] } else { &[1.0] };
+    let powers = multiples([low - 1.0, high], 1.0).into_iter();
+    let marks = powers.flat_map(|power| {
+        factors.iter().map(move |factor| {
+            let value = factor * 10.0_f64.powf(power);
+            (value.log10(), tick_label(value, 10.0_f64.powf(power)))
+        })
+    });
+    marks.filter(|(at, _)| (low..=high).contains(at)).collect()
 }
 
 fn tick(text: String, at: Place, align: Align) -> Label {

@@ -21,7 +21,7 @@ use thiserror::Error;
 
 pub use orbit::Orbit;
 pub use scale::{Extent, multiples, round_step, tick_label};
-pub use sheets::{Evidence, figures_of};
+pub use sheets::figures_of;
 
 use ink::Ink;
 

@@ -116,3 +116,20 @@ pub fn calibration_look(origin: &Origin) -> CalibrationLook {
     };
     CalibrationLook { color, marker, further }
 }
+
+/// Colours of regions of a scanned part, in the order of their use.
+const REGIONS: [Rgb; 7] = [
+    Rgb(0x00, 0x72, 0xb2),
+    Rgb(0xd9, 0x7a, 0x00),
+    Rgb(0x00, 0x9e, 0x73),
+    Rgb(0xcc, 0x79, 0xa7),
+    Rgb(0x56, 0xb4, 0xe9),
+    Rgb(0xd5, 0x5e, 0x00),
+    Rgb(0xc9, 0xb8, 0x2e),
+];
+
+/// The colour of the so-many-th region.
+#[must_use]
+pub const fn region_color(idx: usize) -> Rgb {
+    REGIONS[idx % REGIONS.len()]
+}

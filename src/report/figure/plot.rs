@@ -13,6 +13,8 @@ pub struct Axis {
     pub names: Option<Vec<String>>,
     /// Whether only whole numbers are marked.
     pub is_whole: bool,
+    /// Whether its values are the powers of ten of what it is labelled with; of the axis below only.
+    pub is_logarithmic: bool,
     /// Whether it has labels at its marks.
     pub is_labelled: bool,
 }

@@ -2,6 +2,7 @@
 
 use crate::calibrate::{Method, Sweep};
 use crate::fit::{CircleMethod, PointClass};
+use crate::report::evidence::TargetEvidence;
 use crate::report::figure::Extent;
 use crate::report::figure::Figure;
 use crate::report::figure::ink::{Fill, Stroke};
@@ -17,8 +18,7 @@ use crate::text::edges::feature_name;
 use crate::text::figures as words;
 use crate::text::typeset::{decimals_of_std, fixed, signed, std_text, with_std};
 
-use super::Evidence;
-use super::sheet::{Multiples, Sheet};
+use super::sheet::{Multiples, Sheet, Small};
 
 /// Parts of the height that a profile and a curve take; the residuals below get the rest.
 const PROFILE_PART: f64 = 0.66;
@@ -51,8 +51,8 @@ impl Seen {
 }
 
 /// The first usable profile of each enabled station, or its first one where none is.
-fn seen(evidence: &Evidence<'_>) -> Vec<Seen> {
-    let session = evidence.session;
+fn seen(target: &TargetEvidence) -> Vec<Seen> {
+    let session = &target.session;
     let radius_mm = ball_radius_mm(session);
     let of_station = |station_idx: usize| {
         let station = &session.stations[station_idx];
@@ -62,7 +62,7 @@ fn seen(evidence: &Evidence<'_>) -> Vec<Seen> {
                 Reading::Point(_) => None,
             });
         let models = profiles.map(|(capture_idx, profile)| {
-            let reading = evidence.measured.reading(station_idx, capture_idx);
+            let reading = target.measured.reading(station_idx, capture_idx);
             (capture_idx, profile_model(profile, reading, radius_mm, CircleMethod::Robust))
         });
         let mut first = None;
@@ -84,12 +84,9 @@ fn seen(evidence: &Evidence<'_>) -> Vec<Seen> {
 }
 
 /// The figures of profiles and curves.
-pub(super) fn figures(evidence: &Evidence<'_>) -> Vec<Figure> {
-    if !evidence.session.scans().is_empty() && evidence.results.is_empty() {
-        return Vec::new();
-    }
-    let mut figures = profiles(&seen(evidence));
-    figures.extend(curves(evidence));
+pub(super) fn figures(target: &TargetEvidence) -> Vec<Figure> {
+    let mut figures = profiles(&seen(target));
+    figures.extend(curves(target));
     figures
 }
 
@@ -97,32 +94,16 @@ fn profiles(seen: &[Seen]) -> Vec<Figure> {
     let Some(first) = seen.iter().find(|seen| seen.model.found.is_ok()) else { return Vec::new() };
     let mut figures = vec![one_profile(first)];
     if seen.len() > 1 {
-        let multiples = Multiples { height: 152.0, legend: shared_legend(seen) };
-        let pages = multiples.pages(seen.len(), |sheet, cell| {
-            let shown = &seen[cell.idx];
+        let small = |shown: &Seen| {
             let mut upper = profile_plot(&shown.model, false);
-            let mut lower = residual_plot(&shown.model);
             upper.heading = Some(shown.heading());
-            for plot in [&mut upper, &mut lower] {
-                plot.x.title.clear();
-            }
-            if !cell.is_first {
-                upper.y.title.clear();
-                lower.y.title.clear();
-            }
-            if cell.is_last {
-                lower.x.title = shared::X_AXIS.to_owned();
-            }
-            upper.y.title = if cell.is_first { shared::Z_AXIS_SHORT.to_owned() } else { String::new() };
-            upper.x.is_labelled = false;
-            sheet.stack_following(0.62, &upper, &mut lower, &cell.area);
-        });
-        let num_pages = pages.len();
-        for (idx, sheet) in pages.into_iter().enumerate() {
-            let title = words::profiles_title(idx + 1, num_pages);
-            let id = if num_pages > 1 { format!("profiles-{}", idx + 1) } else { "profiles".to_owned() };
-            figures.push(sheet.figure(id, title.clone(), title));
-        }
+            upper.x = Axis::default();
+            shared::Z_AXIS_SHORT.clone_into(&mut upper.y.title);
+            Small { upper, lower: Some(residual_plot(&shown.model)) }
+        };
+        let multiples =
+            Multiples { height: 150.0, upper_part: 0.64, legend: shared_legend(seen), x_title: shared::X_AXIS };
+        figures.extend(multiples.figures(seen.iter().map(small).collect(), "profiles", words::profiles_title));
     }
     figures
 }
@@ -272,42 +253,26 @@ fn residual_plot(model: &ProfileModel) -> Plot {
     plot
 }
 
-fn curves(evidence: &Evidence<'_>) -> Vec<Figure> {
-    let Some(radius_mm) = ball_radius_mm(evidence.session) else { return Vec::new() };
-    let stations = evidence.session.stations.iter().enumerate();
+fn curves(target: &TargetEvidence) -> Vec<Figure> {
+    let Some(radius_mm) = ball_radius_mm(&target.session) else { return Vec::new() };
+    let stations = target.session.stations.iter().enumerate();
     let sweeps: Vec<(&str, &Sweep)> = stations
-        .filter_map(|(idx, station)| Some((station.label.as_str(), sweep_of(evidence.results, idx)?.1)))
+        .filter_map(|(idx, station)| Some((station.label.as_str(), sweep_of(target.results(), idx)?.1)))
         .filter(|(_, sweep)| sweep.points.len() > 1)
         .collect();
     let Some((label, sweep)) = sweeps.first() else { return Vec::new() };
     let mut figures = vec![one_curve(label, sweep, radius_mm)];
     if sweeps.len() > 1 {
-        let stop = Entry::new(
-            Sign::Hollow(Marker::Down),
-            palette::method_color(Method::BallMaxArcStep),
-            words::PUBLISHED_STOP,
-        );
+        let color = palette::method_color(Method::BallMaxArcStep);
         let mut legend = curve_legend();
-        legend.push(stop);
-        let multiples = Multiples { height: 118.0, legend };
-        let pages = multiples.pages(sweeps.len(), |sheet, cell| {
-            let (label, sweep) = sweeps[cell.idx];
-            let mut plot = curve_plot(&Curve::of(sweep), radius_mm, false);
-            plot.heading = Some(words::station(label));
-            if !cell.is_first {
-                plot.y.title.clear();
-            }
-            if !cell.is_last {
-                plot.x.title.clear();
-            }
-            sheet.plot(&plot, &cell.area);
-        });
-        let num_pages = pages.len();
-        for (idx, sheet) in pages.into_iter().enumerate() {
-            let title = words::curves_title(idx + 1, num_pages);
-            let id = if num_pages > 1 { format!("curves-{}", idx + 1) } else { "curves".to_owned() };
-            figures.push(sheet.figure(id, title.clone(), title));
-        }
+        legend.push(Entry::new(Sign::Hollow(Marker::Down), color, words::PUBLISHED_STOP));
+        let small = |(label, sweep): &(&str, &Sweep)| {
+            let mut upper = curve_plot(&Curve::of(sweep), radius_mm, false);
+            upper.heading = Some(words::station(label));
+            Small { upper, lower: None }
+        };
+        let multiples = Multiples { height: 108.0, upper_part: 1.0, legend, x_title: shared::TRAVEL_AXIS };
+        figures.extend(multiples.figures(sweeps.iter().map(small).collect(), "curves", words::curves_title));
     }
     figures
 }

@@ -32,13 +32,18 @@ impl Sheet {
         Area::new([0.0, 0.0], [WIDTH, self.height])
     }
 
-    /// Its columns, equally wide.
-    pub fn columns<const N: usize>(&self) -> [Area; N] {
-        let width = (WIDTH - GAP * frame::whole(N - 1)) / frame::whole(N);
-        std::array::from_fn(|idx| {
-            let left = frame::whole(idx) * (width + GAP);
-            Area::new([left, 0.0], [left + width, self.height])
-        })
+    /// A legend for all plots, at the top; answers two equally wide columns below it.
+    pub fn legend_over_columns(&mut self, entries: &[Entry]) -> [Area; 2] {
+        let below = self.legend(entries);
+        let width = (WIDTH - 2.0 * GAP) / 2.0;
+        [0.0, width + 2.0 * GAP].map(|left| Area::new([left, below.min[1]], [left + width, self.height]))
+    }
+
+    /// A legend for all plots, at the top; answers what is left.
+    pub fn legend(&mut self, entries: &[Entry]) -> Area {
+        let area = self.area();
+        let height = self.page.legend(entries, &area);
+        Area::new([0.0, if height > 0.0 { height + 4.0 } else { 0.0 }], area.max)
     }
 
     /// The page itself, for what is no plot.
@@ -64,14 +69,16 @@ impl Sheet {
         }
     }
 
-    /// A profile above its residuals: the same x in both, the view of the first.
+    /// A plot above another that takes its x axis from it, with so much of the height for the first.
     pub fn stack_following(&mut self, part: f64, upper: &Plot, lower: &mut Plot, area: &Area) {
         let left = frame::left_room(upper, area).max(frame::left_room(lower, area));
-        let middle = area.min[1] + area.height() * part;
+        self.following(upper, lower, area, area.min[1] + area.height() * part, left);
+    }
+
+    fn following(&mut self, upper: &Plot, lower: &mut Plot, area: &Area, middle: f64, left: f64) {
         let above = Area::new(area.min, [area.max[0], middle]);
+        lower.view.y = lower.view.with_margin().y;
         lower.view.x = frame::view_in(upper, &above, left).x;
-        let margin = (lower.view.y[1] - lower.view.y[0]) * 0.06;
-        lower.view.y = [lower.view.y[0] - margin, lower.view.y[1] + margin];
         lower.is_view_final = true;
         frame::draw(upper, &above, left, &mut self.page);
         frame::draw(lower, &Area::new([area.min[0], middle], area.max), left, &mut self.page);
@@ -89,62 +96,92 @@ impl Sheet {
 pub(super) struct Multiples {
     /// Height of each, points.
     pub height: f64,
+    /// Part of the height that the upper plot of each takes, where there is one below it.
+    pub upper_part: f64,
     /// What the signs mean in all of them.
     pub legend: Vec<Entry>,
+    /// Title of all x axes: it stands only where no other plot is below.
+    pub x_title: &'static str,
 }
 
-/// The place of a small plot among the others.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Cell {
-    /// Its place in the list.
-    pub idx: usize,
-    /// Its area.
-    pub area: Area,
-    /// Whether it is the first of its row: there stand the titles of the y axes.
-    pub is_first: bool,
-    /// Whether no other stands below it: there stand the titles of the x axes.
-    pub is_last: bool,
+/// A small plot, or one above another that shares its x axis. Titles of y axes stand only in the first column.
+pub(super) struct Small {
+    pub upper: Plot,
+    pub lower: Option<Plot>,
 }
 
 impl Multiples {
-    /// The pages, each drawn cell by cell.
-    pub fn pages(&self, count: usize, mut draw: impl FnMut(&mut Sheet, Cell)) -> Vec<Sheet> {
+    /// The pages.
+    pub fn pages(&self, mut plots: Vec<Small>) -> Vec<Sheet> {
         const LEGEND_ROOM: f64 = 18.0;
+        let count = plots.len();
         let num_columns = match count {
             0 => return Vec::new(),
             1..=2 => 2,
             3..=9 => 3,
             _ => 4,
         };
-        let most_rows = rows_within(MOST_HEIGHT - LEGEND_ROOM, self.height);
+        let most_rows = rows_within(MOST_HEIGHT - LEGEND_ROOM - frame::TITLE_HEIGHT, self.height);
         let num_pages = count.div_ceil(num_columns * most_rows);
         // Pages are about equally full.
         let rows_a_page = count.div_ceil(num_columns).div_ceil(num_pages);
-        let a_page = rows_a_page * num_columns;
         let width = (WIDTH - GAP * frame::whole(num_columns - 1)) / frame::whole(num_columns);
         let mut pages = Vec::new();
-        for first in (0..count).step_by(a_page) {
-            let on_page = a_page.min(count - first);
-            let num_rows = on_page.div_ceil(num_columns);
-            let height = LEGEND_ROOM + frame::whole(num_rows) * (self.height + ROW_GAP) - ROW_GAP;
+        for on_page in plots.chunks_mut(rows_a_page * num_columns) {
+            let num_rows = on_page.len().div_ceil(num_columns);
+            let height = LEGEND_ROOM + frame::whole(num_rows) * (self.height + ROW_GAP) - ROW_GAP + frame::TITLE_HEIGHT;
             let mut sheet = Sheet::new(height);
             let area = sheet.area();
-            sheet.page().legend(&self.legend, &area);
-            for place in 0..on_page {
+            sheet.page.legend(&self.legend, &area);
+            let count = on_page.len();
+            for (place, small) in on_page.iter_mut().enumerate() {
+                if place % num_columns > 0 {
+                    small.upper.y.title.clear();
+                    small.lower.iter_mut().for_each(|lower| lower.y.title.clear());
+                }
+                let lowest = small.lower.as_mut().unwrap_or(&mut small.upper);
+                lowest.x.title = if place + num_columns >= count { self.x_title.to_owned() } else { String::new() };
+            }
+            // One room at the left for each column, so that its plots line up.
+            let cell = Area::new([0.0, 0.0], [width, self.height]);
+            let mut lefts = vec![0.0_f64; num_columns];
+            for (place, small) in on_page.iter().enumerate() {
+                for plot in std::iter::once(&small.upper).chain(&small.lower) {
+                    lefts[place % num_columns] = lefts[place % num_columns].max(frame::left_room(plot, &cell));
+                }
+            }
+            for (place, small) in on_page.iter_mut().enumerate() {
                 let (row, column) = (place / num_columns, place % num_columns);
                 let left = frame::whole(column) * (width + GAP);
                 let top = LEGEND_ROOM + frame::whole(row) * (self.height + ROW_GAP);
-                let cell = Cell {
-                    idx: first + place,
-                    area: Area::new([left, top], [left + width, top + self.height]),
-                    is_first: column == 0,
-                    is_last: place + num_columns >= on_page,
-                };
-                draw(&mut sheet, cell);
+                // The title goes below the cell, so that all plots are equally high.
+                let title = if place + num_columns >= count { frame::TITLE_HEIGHT } else { 0.0 };
+                let area = Area::new([left, top], [left + width, top + self.height + title]);
+                match &mut small.lower {
+                    Some(lower) => {
+                        let middle = top + self.upper_part * self.height;
+                        sheet.following(&small.upper, lower, &area, middle, lefts[column]);
+                    }
+                    None => frame::draw(&small.upper, &area, lefts[column], &mut sheet.page),
+                }
             }
             pages.push(sheet);
         }
         pages
+    }
+
+    /// The pages as figures; `title` gets the number of the page and that of all.
+    pub fn figures(&self, plots: Vec<Small>, id: &str, title: impl Fn(usize, usize) -> String) -> Vec<Figure> {
+        let pages = self.pages(plots);
+        let num_pages = pages.len();
+        let numbered = pages.into_iter().zip(1..);
+        numbered
+            .map(|(sheet, number)| {
+                let title = title(number, num_pages);
+                let id = if num_pages > 1 { format!("{id}-{number}") } else { id.to_owned() };
+                sheet.figure(id, title.clone(), title)
+            })
+            .collect()
     }
 }
 
