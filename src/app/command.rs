@@ -11,6 +11,7 @@ use crate::session::{Edit, Target};
 use crate::verify::Calibration;
 
 use super::cell::CellCommand;
+use super::workbench::NoticeKind;
 use super::workbench::scans::ScanCommand;
 
 impl Command {
@@ -157,6 +158,8 @@ pub enum Command {
     Scan(Box<ScanCommand>),
     /// Something for the live cell.
     Cell(Box<CellCommand>),
+    /// Says that something was done, or could not be.
+    Tell(NoticeKind, String),
     /// Removes a notice.
     DismissNotice(u64),
 }

@@ -11,8 +11,12 @@ mod diagnosis_entry;
 pub mod diagnosis_lines;
 pub mod document;
 pub mod evidence;
+<<<<<<< HEAD
 pub mod files;
 pub mod html;
+=======
+pub mod figure;
+>>>>>>> figures
 pub mod judgement;
 pub mod markdown;
 pub mod pdf;

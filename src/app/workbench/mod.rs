@@ -311,6 +311,7 @@ impl Workbench {
             Command::WithdrawCalibration(name) => self.withdraw_calibration(&name),
             Command::Scan(command) => self.command_scans(*command),
             Command::Cell(command) => self.command_cell(*command),
+            Command::Tell(kind, message) => self.notify(kind, message),
             Command::DismissNotice(id) => self.notices.retain(|notice| notice.id != id),
         }
     }

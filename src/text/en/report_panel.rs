@@ -18,3 +18,22 @@ pub const NEXT_REPORT: &str = "See the report";
 pub fn wrote(file: &str) -> String {
     format!("Wrote {file}")
 }
+
+/// Menu entry, followed by the plots in sight.
+pub const PICTURES: &str = "Picture of";
+/// Why the entry is not to be had.
+pub const NO_PICTURES: &str = "No plot is in sight.";
+/// Menu entry of a plot.
+pub const SAVE_PNG: &str = "Save as PNG…";
+/// Menu entry of a plot.
+pub const SAVE_SVG: &str = "Save as SVG…";
+/// Menu entry of a plot.
+pub const COPY_PICTURE: &str = "Copy picture";
+/// Heading of the question for the file.
+pub const PICTURE_TITLE: &str = "File for the picture";
+/// Notice.
+pub const COPIED_PICTURE: &str = "Picture copied";
+/// Notice: a bug, or no memory.
+pub const NO_PICTURE: &str = "The picture could not be drawn. Your session is unchanged.";
+/// Notice.
+pub const COPIED_TEXT: &str = "Text copied";

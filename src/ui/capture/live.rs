@@ -9,14 +9,19 @@ use crate::app::cell::LiveProfile;
 use crate::calibrate::Reading;
 use crate::device::LinkState;
 use crate::fit::{CircleMethod, Found};
+use crate::report::figure::model::{Curve, ProfileModel, extent, profile_model};
 use crate::text::arcs::edge_found;
 use crate::text::capture as words;
 use crate::text::edges::feature_name;
+use crate::text::typeset::with_std;
 use crate::ui::arcs::curve::{self, CurveLook};
-use crate::ui::arcs::model::{Curve, ProfileModel, profile_model};
 use crate::ui::arcs::profile;
 use crate::ui::charts::Extent;
+<<<<<<< HEAD
 use crate::ui::figures::with_std;
+use crate::ui::save_picture::saveable;
+=======
+>>>>>>> figures
 use crate::ui::theme;
 use crate::ui::widgets::{card_with_height, fixed, nothing};
 
@@ -76,11 +81,12 @@ fn live_card(ui: &mut Ui, height: f32, desk: &mut Desk<'_>) {
         }
         let model = desk.state.profile_of(live, ball_radius_mm);
         found_line(ui, live);
-        let extent = profile::extent(&model, true);
+        let extent = extent(&model, true);
         let steady = steady(desk.state.view, [extent.x, extent.y]);
         desk.state.view = Some(steady);
         let extent = Extent { x: steady[0], y: steady[1] };
-        profile::show_alone(ui, "live profile", &model, extent, &mut desk.state.is_profile_fitted);
+        let is_fitted = &mut desk.state.is_profile_fitted;
+        saveable(ui, words::LIVE, |ui| profile::show_alone(ui, "live profile", &model, extent, is_fitted));
     });
     if fits {
         desk.state.is_profile_fitted = true;
@@ -180,7 +186,8 @@ fn curve_card(ui: &mut Ui, height: f32, desk: &mut Desk<'_>) {
                 has_residuals: false,
             };
             let curve = Curve { points: &shown.points, peak: shown.peak, published_stop_mm: shown.published_stop_mm };
-            curve::show(ui, &curve, &look, &mut desk.state.is_curve_fitted);
+            let is_fitted = &mut desk.state.is_curve_fitted;
+            saveable(ui, words::RADIUS_AGAINST_STEP, |ui| curve::show(ui, &curve, &look, is_fitted));
         },
     );
 }

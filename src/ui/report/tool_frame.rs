@@ -6,10 +6,12 @@ use egui::{
     Sense, Stroke, TextEdit, TextStyle, Ui, UiBuilder, WidgetInfo, vec2,
 };
 
+use crate::app::{Command, NoticeKind};
 use crate::calibrate::{Method, Solution};
 use crate::geometry::PoseConvention;
 use crate::report::tool_frame::{Format, Group, Name, NotThisFormat, Parent, RoundTrip, ToolFrame, formats};
 use crate::text::methods::method_name;
+use crate::text::report_panel as panel_words;
 use crate::text::tool_frame as words;
 use crate::ui::figures::std_text;
 use crate::ui::file_dialog::Purpose;
@@ -208,9 +210,11 @@ fn text_card(
     solved: &[Method],
 ) {
     let height = ui.available_height();
+    let mut is_copied = false;
     let buttons = |ui: &mut Ui| {
         if widgets::primary_button(ui, words::COPY).clicked() {
             ui.ctx().copy_text(shown.text.clone());
+            is_copied = true;
         }
         if ui.button(words::SAVE).clicked() {
             let name = format!("{}.{}", shown.frame.name.as_str(), shown.format.extension);
@@ -245,6 +249,9 @@ fn text_card(
         ui.add_space(4.0);
         round_trip(ui, shown);
     });
+    if is_copied {
+        context.commands.push(Command::Tell(NoticeKind::Done, panel_words::COPIED_TEXT.to_owned()));
+    }
 }
 
 fn choose_calibration(ui: &mut Ui, context: &mut PanelContext<'_>, shown: &Shown<'_>, solved: &[Method]) {

@@ -11,8 +11,9 @@ use std::time::{Duration, Instant};
 use egui::{CentralPanel, Context, Frame, Margin, Panel, Stroke, Ui, ViewportCommand};
 
 use crate::app::cell::CellCommand;
-use crate::app::jobs::Wake;
-use crate::app::{Command, OnDisk, Workbench};
+use crate::app::jobs::{JobOutcome, Slot, Wake};
+use crate::app::{Command, NoticeKind, OnDisk, Workbench};
+use crate::text::report_panel as report_words;
 use crate::text::shell as words;
 
 use self::live_cell::CellWatch;
@@ -30,6 +31,7 @@ use super::poses::panel::PosesState;
 use super::rail::{self, Step};
 use super::report::ReportState;
 use super::save_file::{self, SaveFile};
+use super::save_picture::{self, Drawn};
 use super::start::panel::StartState;
 use super::verify::VerifyState;
 use super::{
@@ -90,6 +92,8 @@ pub struct Shell {
     persisted: Persisted,
     file_dialog: FileDialog,
     save_path: Option<SavePath>,
+    /// A picture that is being drawn.
+    drawing: Slot<Drawn>,
     /// What waits for its path.
     to_write: Option<SaveFile>,
     is_help_open: bool,
@@ -149,6 +153,7 @@ impl Shell {
             persisted,
             file_dialog: FileDialog::default(),
             save_path: None,
+            drawing: Slot::default(),
             to_write: None,
             is_help_open: false,
             history: HistoryWindow::default(),
@@ -197,7 +202,10 @@ impl Shell {
     /// Whether something is being read or solved in the background.
     #[must_use]
     pub const fn is_busy(&self) -> bool {
-        self.workbench.is_busy() || self.start.is_reading() || self.paste_patience.is_some()
+        self.workbench.is_busy()
+            || self.start.is_reading()
+            || self.paste_patience.is_some()
+            || self.drawing.is_running()
     }
 
     /// Takes in finished jobs; also while the window is hidden.
@@ -210,6 +218,7 @@ impl Shell {
         self.notice_new_document(ctx);
         self.notice_new_results();
         self.take_dialog_answer();
+        self.take_drawn(ctx);
         self.go_on_after_saving(ctx);
         self.guard_closing(ctx);
         self.dismiss_done_notice(ctx);
@@ -227,6 +236,7 @@ impl Shell {
         }
         // What is typed while a question waits is its answer, and nothing for what lies below.
         let is_asking = self.is_asking();
+        save_picture::begin_frame(&ctx);
         let mut actions = if is_asking { Vec::new() } else { actions::pressed(&ctx, &self.workbench) };
         let mut commands = Vec::new();
         if actions.iter().any(|action| action.takes_what_is_typed()) {
@@ -264,6 +274,9 @@ impl Shell {
         }
         for command in commands {
             self.request(command);
+        }
+        if let Some((picture, wanted)) = save_picture::take(&ctx) {
+            self.drawing.start("draw picture", &self.wake, move |_| save_picture::draw(&picture, wanted));
         }
         if let Some(file) = save_file::take(&ctx) {
             self.ask_where_to_save(file);
@@ -332,6 +345,23 @@ impl Shell {
                 Step::Report => report::show(ui, &mut context, &mut self.report),
             }
         });
+    }
+
+    /// A picture has been drawn: it goes to the clipboard, or to a file.
+    fn take_drawn(&mut self, ctx: &Context) {
+        match self.drawing.poll() {
+            Some(JobOutcome::Done(Drawn::File(file))) => self.ask_where_to_save(file),
+            Some(JobOutcome::Done(Drawn::Image(image))) => {
+                ctx.copy_image(image);
+                let copied = report_words::COPIED_PICTURE.to_owned();
+                self.workbench.apply(Command::Tell(NoticeKind::Done, copied));
+            }
+            Some(JobOutcome::Panicked | JobOutcome::NotStarted(_)) => {
+                let failed = report_words::NO_PICTURE.to_owned();
+                self.workbench.apply(Command::Tell(NoticeKind::Error, failed));
+            }
+            None => {}
+        }
     }
 
     fn read_dropped_files(ctx: &Context, commands: &mut Vec<Command>) {
