@@ -11,12 +11,9 @@ mod diagnosis_entry;
 pub mod diagnosis_lines;
 pub mod document;
 pub mod evidence;
-<<<<<<< HEAD
+pub mod figure;
 pub mod files;
 pub mod html;
-=======
-pub mod figure;
->>>>>>> figures
 pub mod judgement;
 pub mod markdown;
 pub mod pdf;

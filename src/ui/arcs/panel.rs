@@ -12,12 +12,8 @@ use crate::report::figure::model::{Curve, Found, ball_radius_mm, sweep_of};
 use crate::session::Target;
 use crate::text::arcs as text;
 use crate::text::edges::feature_name;
-<<<<<<< HEAD
-use crate::ui::figures::std_text;
-use crate::ui::save_picture::saveable;
-=======
 use crate::text::typeset::std_text;
->>>>>>> figures
+use crate::ui::save_picture::saveable;
 use crate::ui::{PanelContext, Selection, theme, widgets};
 
 use super::list::Columns;
@@ -388,14 +384,9 @@ fn curve_card(
                 hovered_capture: hovered_in_list,
                 has_residuals: true,
             };
-<<<<<<< HEAD
             let is_fitted = &mut state.is_curve_fitted;
-            let response = saveable(ui, text::RADIUS_AGAINST_STEP, |ui| {
-                curve::show(ui, &model::Curve::of(sweep), &look, is_fitted)
-            });
-=======
-            let response = curve::show(ui, &Curve::of(sweep), &look, &mut state.is_curve_fitted);
->>>>>>> figures
+            let response =
+                saveable(ui, text::RADIUS_AGAINST_STEP, |ui| curve::show(ui, &Curve::of(sweep), &look, is_fitted));
             state.hovered_capture = response.hovered.or(hovered_in_list);
             if let Some(capture_idx) = response.clicked {
                 selection.capture_idx = capture_idx;

@@ -17,11 +17,7 @@ use crate::text::typeset::with_std;
 use crate::ui::arcs::curve::{self, CurveLook};
 use crate::ui::arcs::profile;
 use crate::ui::charts::Extent;
-<<<<<<< HEAD
-use crate::ui::figures::with_std;
 use crate::ui::save_picture::saveable;
-=======
->>>>>>> figures
 use crate::ui::theme;
 use crate::ui::widgets::{card_with_height, fixed, nothing};
 

@@ -10,11 +10,7 @@ use crate::text::diagnosis as fault_words;
 use crate::text::diagnosis_panel as words;
 use crate::text::typeset::{std_text, with_std};
 use crate::ui::charts::{self, Chart, Extent, LegendEntry, LegendGlyph};
-<<<<<<< HEAD
-use crate::ui::figures::{std_text, with_std};
 use crate::ui::save_picture::saveable;
-=======
->>>>>>> figures
 use crate::ui::{PanelContext, Selection, theme, widgets};
 
 use super::bars::{self, Bar};

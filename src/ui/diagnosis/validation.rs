@@ -7,11 +7,7 @@ use crate::calibrate::validation::{SplitHalf, Validation};
 use crate::text::diagnosis_panel as words;
 use crate::text::typeset::std_text;
 use crate::ui::charts::{self, Chart, Extent, LegendEntry, LegendGlyph};
-<<<<<<< HEAD
-use crate::ui::figures::std_text;
 use crate::ui::save_picture::saveable;
-=======
->>>>>>> figures
 use crate::ui::{Selection, theme, widgets};
 
 use super::bars::{self, Bar};
