@@ -82,14 +82,12 @@ fn write_block(out: &mut String, block: &Block) -> Result<(), FigureError> {
 fn write_figure(out: &mut String, figure: &Figure) -> Result<(), FigureError> {
     let svg = figure.svg()?;
     // In a page there is no declaration before it.
-    let svg = svg.find("<svg").map_or(svg.as_str(), |start| &svg[start..]);
-    writeln!(
-        out,
-        "<figure class=\"figure\"><figcaption>{}</figcaption>{}</figure>",
-        escaped(&figure.title),
-        svg.trim()
-    )
-    .ok();
+    let svg = svg.find("<svg").map_or(svg.as_str(), |start| &svg[start..]).trim();
+    // It is drawn in points of print, of which a browser makes pixels unless it is told.
+    let [width, _] = figure.size_points();
+    let title = escaped(&figure.title);
+    writeln!(out, "<figure class=\"figure\" style=\"width: {width}pt\"><figcaption>{title}</figcaption>{svg}</figure>")
+        .ok();
     Ok(())
 }
 

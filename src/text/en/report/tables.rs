@@ -1,0 +1,311 @@
+//! Wording of the tables of reports: methods, validation, verification, stations.
+
+use crate::calibrate::{Method, Mount};
+use crate::session::Target;
+
+use crate::text::en::{method_name, plural};
+
+/// Title of a table.
+pub const OVERVIEW: &str = "Errors of the methods";
+/// Head of a column.
+pub const MAXIMUM: &str = "maximum";
+/// Head of a column.
+pub const RMS: &str = "RMS";
+/// Head of a column.
+pub const LEFT_OUT_RMS: &str = "left out";
+/// Group of columns.
+pub const FROM_TRUTH: &str = "from the truth";
+/// Head of a column.
+pub const POINT: &str = "point";
+/// Head of a column.
+pub const ROTATION: &str = "rotation";
+
+/// What the columns of the errors mean.
+#[must_use]
+pub const fn errors_legend(target: &Target) -> [&'static str; 2] {
+    const LEFT_OUT: &str =
+        "left out: each station predicted by the others, RMS · σ point: 1 σ of a point in the workspace, 3D";
+    let first = match target {
+        Target::RightAnglePlate => "max: largest distance of a point from its edge · RMS: of these distances",
+        Target::Point => {
+            "max: largest coordinate relative to the first station · RMS: scatter of the tip about its place, 3D"
+        }
+        Target::Ball { .. } | Target::Workpiece | Target::Rgbd { .. } => {
+            "max: largest coordinate relative to the first station · RMS: scatter of the ball about its place, 3D"
+        }
+    };
+    [first, LEFT_OUT]
+}
+
+/// A method that gave nothing.
+#[must_use]
+pub fn not_computed(method: Method, reason: &str) -> String {
+    format!("{}: not computed. {reason}", method_name(method))
+}
+
+/// Title of a table.
+pub const DIFFERENCES: &str = "Differences of the calibrations, second relative to first";
+/// Head of a column.
+pub const PAIR: &str = "methods";
+/// Head of a column.
+pub const AT_POINT: &str = "at workspace point";
+/// Head of a column.
+pub const IN_STDS: &str = "in σ";
+/// What the last column means.
+pub const DIFFERENCES_NOTE: &str =
+    "in σ: the distance over its standard deviation, the two taken as independent; up to 2 they agree";
+
+/// Title of a method's table in the layout of the papers.
+#[must_use]
+pub fn paper_table_title(method: Method) -> String {
+    let like = if Method::BALL.contains(&method) { ", in the layout of Lin & Mu, Tables 1 and 2" } else { "" };
+    format!("{}{like}", method_name(method))
+}
+
+/// Group of columns.
+pub const FLANGE_IN_BASE: &str = "flange in base: quaternion";
+/// Group of columns.
+pub const FLANGE_POSITION: &str = "flange in base / mm";
+/// Group of columns: the target in the sensor's frame.
+#[must_use]
+pub fn in_sensor(method: Method) -> String {
+    format!("{} in sensor / mm", seen(method))
+}
+
+/// Group of columns: the target where it stands still.
+#[must_use]
+pub fn in_standing_frame(method: Method, mount: Mount) -> String {
+    let frame = match mount {
+        Mount::OnFlange => "base",
+        Mount::Fixed => "flange",
+    };
+    format!("{} in {frame} / mm", seen(method))
+}
+
+/// Group of columns: the error.
+#[must_use]
+pub const fn error(method: Method) -> &'static str {
+    match method {
+        Method::PlateOrthogonal | Method::PlateBundle => "off the edge / mm",
+        _ => "error from first / mm",
+    }
+}
+
+const fn seen(method: Method) -> &'static str {
+    match method {
+        Method::PlateOrthogonal | Method::PlateBundle => "edge point",
+        Method::FixedPoint => "tip",
+        Method::BallFixedPoint | Method::BallMaxArcStep | Method::BallMaxArc | Method::BallBundle => "ball",
+    }
+}
+
+/// Head of a column.
+pub const NUMBER: &str = "no.";
+/// Below a table with rows that were not used.
+pub const UNUSED_NOTE: &str = "–: the station was left out, or the method could not use it";
+
+/// Title of the table that a paper printed.
+pub const PUBLISHED: &str = "As published";
+/// Group of columns.
+pub const PRINTED_BALL: &str = "printed ball in base / mm";
+/// Group of columns.
+pub const PRINTED_ERROR: &str = "printed error / mm";
+/// Group of columns.
+pub const RECOMPUTED_ERROR: &str = "error of the printed centres / mm";
+
+/// Below the printed table.
+#[must_use]
+pub fn misprints_note(count: usize) -> String {
+    if count == 0 {
+        "The printed errors follow from the printed centres.".to_owned()
+    } else {
+        format!("≠: {count} misprint{}; the printed centres give another error", plural(count))
+    }
+}
+
+/// Nothing is wrong.
+pub const NOTHING_FOUND: &str = "Nothing was found to be wrong.";
+
+/// The truth of a simulated session.
+pub const TRUTH: &str = "From the truth (simulated session)";
+
+/// How far a result is from the truth.
+#[must_use]
+pub fn truth_line(point_mm: &str, rotation_deg: &str) -> String {
+    format!("{point_mm} mm at the workspace point, {rotation_deg}°")
+}
+
+/// Name of a fact.
+pub const LEAVE_ONE_OUT: &str = "Each station predicted by the others";
+
+/// Left-out errors.
+#[must_use]
+pub fn leave_one_out_line(rms_mm: &str, max_mm: &str) -> String {
+    format!("RMS {rms_mm} mm, maximum {max_mm} mm")
+}
+
+/// There are too few stations for it.
+pub const NO_LEAVE_ONE_OUT: &str = "too few stations to leave one out";
+/// Name of a fact.
+pub const IN_SAMPLE: &str = "Scatter in sample";
+/// Name of a fact.
+pub const ROTATION_SPAN: &str = "Largest rotation between two poses";
+
+/// Title of a table.
+pub const DISTANCES: &str = "Distances of the edge points from the fitted lines and plane";
+/// Title of a table.
+#[must_use]
+pub const fn stability_title(is_touched: bool) -> &'static str {
+    if is_touched {
+        "A known point measured many times: measured − touched"
+    } else {
+        "The point measured many times: scatter about its mean"
+    }
+}
+
+/// What δ is.
+pub const STABILITY_NOTE: &str =
+    "3δ: three standard deviations of the measurements · 3D: root of the sum over the axes";
+/// Head of a column.
+pub const CALIBRATION_COLUMN: &str = "calibration";
+/// Group of columns.
+pub const TO_LINES: &str = "to the lines / mm";
+/// Group of columns.
+pub const TO_PLANE: &str = "to the plane / mm";
+/// Head of a column.
+pub const MEAN: &str = "mean";
+/// Head of a column.
+pub const SPREAD: &str = "sd";
+/// Head of a column.
+pub const ANGLE: &str = "angle p–q";
+/// Head of a column.
+pub const GAP: &str = "gap";
+/// Group of columns.
+pub const MEAN_DEVIATION: &str = "mean deviation / mm";
+/// Group of columns.
+pub const THREE_DELTA: &str = "3δ / mm";
+/// Head of a column.
+pub const THREE_DELTA_3D: &str = "3D";
+/// Group of columns.
+pub const DEVIATION: &str = "deviation / mm";
+/// Title of a table.
+pub const CROSS_TARGETS: &str = "Every calibration on every target, RMS and maximum of the errors";
+/// What the star means.
+pub const OWN_DATA: &str = "*: computed from these very data, so in sample";
+/// Title of a table.
+pub const JOINT: &str = "All targets solved together";
+/// What its columns mean.
+pub const JOINT_NOTE: &str = "moved: from where the target alone puts the workspace point · by chance: how often noise alone moves it so far; !: the target contradicts the others";
+/// Head of a column.
+pub const STD_ALONE: &str = "σ point alone";
+/// Head of a column.
+pub const STD_TOGETHER: &str = "σ point together";
+/// Head of a column.
+pub const MOVED: &str = "moved";
+/// Head of a column.
+pub const BY_CHANCE: &str = "by chance";
+
+/// Why there is no calibration from all targets.
+#[must_use]
+pub fn no_joint(reason: &str) -> String {
+    format!("All targets together: {reason}")
+}
+
+/// Whether other targets bear out the answer.
+#[must_use]
+pub const fn borne_out(is_borne_out: bool) -> &'static str {
+    if is_borne_out {
+        "The other targets bear the calibration out: on none of them its error is far above that of the calibration computed from that target."
+    } else {
+        "Other targets do not bear the calibration out: its error there is far above that of the calibration computed from that target."
+    }
+}
+
+/// Profiles of a target in which nothing was found.
+#[must_use]
+pub fn refused(target: &str, num_refused: usize, num_captures: usize, first: &str) -> String {
+    format!("{target}: {num_refused} of {num_captures} profiles were refused; the first: {first}")
+}
+
+/// Heads a scanned part.
+#[must_use]
+pub fn part_heading(name: &str) -> String {
+    format!("Scanned part: {name}")
+}
+
+/// What was scanned and how it is seen.
+#[must_use]
+pub fn part_line(num_points: &str, num_profiles: usize, calibration: &str) -> String {
+    format!("{num_points} points in {num_profiles} profile{}; calibration: {calibration}.", plural(num_profiles))
+}
+
+/// Title of a table.
+pub const PLANES: &str = "Planes";
+/// Head of a column.
+pub const PLANE: &str = "plane";
+/// Head of a column.
+pub const EQUATION: &str = "equation (mm)";
+/// Group of columns.
+pub const KNOWN_TO: &str = "known to, 1 σ";
+/// Head of a column.
+pub const HEIGHT: &str = "height";
+/// Head of a column.
+pub const NORMAL: &str = "normal";
+/// Group of columns.
+pub const DRAWN: &str = "distances of points drawn / mm";
+/// No plane.
+pub const NO_PLANES: &str = "No plane was found that holds 4 % of the points.";
+/// Title of a table.
+pub const ANGLES: &str = "Angles between the planes";
+/// Name of a fact.
+pub const PITCHES: &str = "Pitch";
+/// Name of a fact.
+pub const HEIGHTS: &str = "Height";
+/// Head of a column.
+pub const ANGLE_WITH_STD: &str = "angle ± 1 σ";
+/// Head of a column.
+pub const PLANES_OF_ANGLE: &str = "planes";
+/// Title of a table.
+pub const TEETH: &str = "Teeth";
+/// Head of a column.
+pub const TOOTH: &str = "tooth";
+/// Head of a column.
+pub const PLACE: &str = "place";
+/// Head of a column.
+pub const PITCH: &str = "pitch";
+/// Name of a fact.
+pub const DIAMETER: &str = "Diameter";
+
+/// Title of a table.
+#[must_use]
+pub fn stations_title(method: Method) -> String {
+    format!("Stations as {} has them", method_name(method))
+}
+
+/// Head of a column.
+pub const SIDE: &str = "side";
+/// Head of a column.
+pub const EDGE: &str = "edge";
+/// Head of a column.
+pub const CAPTURES_COLUMN: &str = "captures";
+/// Head of a column.
+pub const ERROR_SIZE: &str = "error |e|";
+/// Head of a column.
+pub const LEFT_OUT_COLUMN: &str = "left out";
+/// Head of a column.
+pub const STUDENTISED: &str = "studentised";
+/// Head of a column.
+pub const MOVES_POINT: &str = "moves point";
+/// Group of columns.
+pub const SWEEP: &str = "largest arc";
+/// Head of a column.
+pub const PEAK: &str = "peak at";
+/// Head of a column.
+pub const OFF_NORMAL: &str = "off normal";
+/// What the columns mean.
+pub const STATIONS_NOTE: &str = "error: about the mean, in sample · left out: predicted by the others · studentised: residual in its σ · moves point: how far the workspace point moves without the station";
+/// The same for a plate.
+pub const EDGE_POINTS_NOTE: &str =
+    "error: distance from its edge, in sample · left out: from the edges found without the station";
+/// In place of figures.
+pub const STATION_LEFT_OUT: &str = "left out";
