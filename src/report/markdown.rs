@@ -23,23 +23,33 @@ pub fn markdown(document: &Document) -> String {
 
 fn write_block(out: &mut String, block: &Block) {
     match block {
-        Block::Heading(title) => writeln!(out, "### {}", escaped(title)).ok(),
-        Block::Paragraph(text) => writeln!(out, "{}", escaped(text)).ok(),
-        Block::Verdict(verdict) => Some(write_verdict(out, verdict)),
-        Block::Facts(facts) => Some(write_facts(out, facts)),
-        Block::Table(table) => Some(write_table(out, table)),
-        Block::Figure(figure) => writeln!(
-            out,
-            "**{}**\n\n![{}]({})",
-            escaped(&figure.title),
-            escaped(&figure.alt),
-            figure_path(figure, "svg")
-        )
-        .ok(),
-        Block::Code { caption, text } => Some(write_code(out, caption, text)),
-        Block::Findings(findings) => Some(findings.iter().for_each(|finding| write_finding(out, finding))),
-        Block::Signature(lines) => Some(write_facts(out, lines)),
-    };
+        Block::Heading(title) => {
+            writeln!(out, "### {}", escaped(title)).ok();
+        }
+        Block::Paragraph(text) => {
+            writeln!(out, "{}", escaped(text)).ok();
+        }
+        Block::Verdict(verdict) => write_verdict(out, verdict),
+        Block::Facts(facts) => write_facts(out, facts),
+        Block::Table(table) => write_table(out, table),
+        Block::Figure(figure) => {
+            writeln!(
+                out,
+                "**{}**\n\n![{}]({})",
+                escaped(&figure.title),
+                escaped(&figure.alt),
+                figure_path(figure, "svg")
+            )
+            .ok();
+        }
+        Block::Code { caption, text } => write_code(out, caption, text),
+        Block::Findings(findings) => {
+            for finding in findings {
+                write_finding(out, finding);
+            }
+        }
+        Block::Signature(lines) => write_facts(out, lines),
+    }
 }
 
 fn write_verdict(out: &mut String, verdict: &Verdict) {

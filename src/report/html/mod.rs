@@ -65,16 +65,20 @@ fn contents(out: &mut String, document: &Document) {
 
 fn write_block(out: &mut String, block: &Block) -> Result<(), FigureError> {
     match block {
-        Block::Heading(title) => writeln!(out, "<h3>{}</h3>", escaped(title)).ok(),
-        Block::Paragraph(text) => writeln!(out, "<p>{}</p>", escaped(text)).ok(),
-        Block::Verdict(verdict) => Some(write_verdict(out, verdict)),
-        Block::Facts(facts) => Some(write_facts(out, facts)),
-        Block::Table(table) => Some(write_table(out, table)),
-        Block::Figure(figure) => Some(write_figure(out, figure)?),
-        Block::Code { caption, text } => Some(write_code(out, caption, text)),
-        Block::Findings(findings) => Some(write_findings(out, findings)),
-        Block::Signature(lines) => Some(write_signature(out, lines)),
-    };
+        Block::Heading(title) => {
+            writeln!(out, "<h3>{}</h3>", escaped(title)).ok();
+        }
+        Block::Paragraph(text) => {
+            writeln!(out, "<p>{}</p>", escaped(text)).ok();
+        }
+        Block::Verdict(verdict) => write_verdict(out, verdict),
+        Block::Facts(facts) => write_facts(out, facts),
+        Block::Table(table) => write_table(out, table),
+        Block::Figure(figure) => write_figure(out, figure)?,
+        Block::Code { caption, text } => write_code(out, caption, text),
+        Block::Findings(findings) => write_findings(out, findings),
+        Block::Signature(lines) => write_signature(out, lines),
+    }
     Ok(())
 }
 
