@@ -338,6 +338,8 @@ impl Frame<'_> {
                 Mark::Dots { points, .. } | Mark::Markers { points, .. } => {
                     points_too.extend(points.iter().map(|point| self.at(*point)));
                 }
+                // Words may stand on dots.
+                Mark::Line { dash: Dash::Dotted, .. } => {}
                 Mark::Line { points, .. } => {
                     let places: Vec<Place> = points.iter().map(|point| self.at(*point)).collect();
                     clipped_line(&places, &self.area).iter().for_each(|run| along(run));

@@ -61,6 +61,8 @@ pub(super) fn grouped(names: Vec<String>, x_title: &str, y_title: &str, series: 
 pub(super) struct Distances {
     pub color: Rgb,
     pub filling: Filling,
+    /// At the end of each bar, so that it can be told without colour.
+    pub marker: Option<Marker>,
     pub distances_mm: Vec<f64>,
 }
 
@@ -85,6 +87,11 @@ pub(super) fn histogram(x_title: &str, y_title: &str, all: &[Distances]) -> Plot
             let left = (whole(bin) + (1.0 - BIN_PART) / 2.0) * width_mm + whole(kind_idx) * bar_mm;
             let x = [left + 0.03 * bar_mm, left + 0.97 * bar_mm];
             plot.mark(Mark::Bar { x, y: whole(count), color: kind.color, filling: kind.filling });
+            if let Some(shape) = kind.marker {
+                let points = vec![[left + bar_mm / 2.0, whole(count)]];
+                let stroke = Stroke::new(0.5, Rgb::WHITE);
+                plot.mark(Mark::Markers { points, shape, radius: 2.0, fill: Some(kind.color), stroke });
+            }
         }
     }
     plot.level(0.0, Stroke::new(0.6, palette::TEXT_DIM), Dash::Solid);

@@ -16,7 +16,7 @@ use super::sheet::Sheet;
 /// A calibration whose distances are so many times those of the best would squeeze all others into one bar.
 const FAR_OFF: f64 = 8.0;
 /// More calibrations than this in one plot cannot be told apart.
-const MOST_SHOWN: usize = 6;
+const MOST_SHOWN: usize = 4;
 /// More measurements than this have no room for a marker each.
 const MOST_MEASUREMENTS: usize = 120;
 
@@ -102,6 +102,7 @@ fn distances(target: &TargetEvidence, looks: &[Look], suffix: &str) -> Option<Fi
             .map(|(look, distances)| bars::Distances {
                 color: look.look.color,
                 filling: filling_of(&look.look),
+                marker: Some(look.look.marker),
                 distances_mm: distances.points.iter().map(distance).collect(),
             })
             .collect();
@@ -132,11 +133,15 @@ fn stability(target: &TargetEvidence, looks: &[Look], suffix: &str) -> Option<Fi
     let mut reach_mm = 0.001_f64;
     for (_, _, stability) in &shown {
         let largest = stability.deviations_mm.iter().map(|deviation| deviation.amax());
-        reach_mm =
-            largest.chain([stability.three_std_mm().amax()]).filter(|size| size.is_finite()).fold(reach_mm, f64::max);
+        reach_mm = largest
+            .chain([(stability.mean_mm.abs() + stability.three_std_mm()).amax()])
+            .filter(|size| size.is_finite())
+            .fold(reach_mm, f64::max);
     }
-    let mut legend: Vec<Entry> = shown.iter().map(|(look, ..)| look.entry()).collect();
-    legend.push(Entry::new(Sign::Line(Dash::Dashed), palette::TEXT_DIM, words::THREE_DELTA));
+    let legend: Vec<Entry> = shown.iter().map(|(look, ..)| look.entry()).collect();
+    // The limits stand at the right, in a place of their own.
+    let limits = whole(names.len());
+    let names: Vec<String> = names.into_iter().chain([words::THREE_DELTA.to_owned()]).collect();
     let plots: Vec<Plot> = ["Δx / mm", "Δy / mm", "Δz / mm"]
         .into_iter()
         .enumerate()
@@ -147,18 +152,16 @@ fn stability(target: &TargetEvidence, looks: &[Look], suffix: &str) -> Option<Fi
             plot.is_view_final = true;
             plot.x.is_labelled = axis == 2;
             plot.level(0.0, Stroke::new(0.6, palette::TEXT_DIM), Dash::Solid);
-            for (look, _, stability) in &shown {
-                let limit = stability.three_std_mm()[axis];
-                for level in [-limit, limit] {
-                    let level = stability.mean_mm[axis] + level;
-                    plot.level(level, Stroke::new(0.7, look.look.color), Dash::Dashed);
-                }
-            }
+            let stroke = Stroke::new(0.5, palette::UNUSED);
+            plot.mark(Mark::Across { at: limits - 0.5, is_upright: true, stroke, dash: Dash::Solid });
             for (place, (look, _, stability)) in shown.iter().enumerate() {
                 // Side by side, so that none covers another.
                 let aside = (whole(place) - whole(shown.len() - 1) / 2.0) * 0.5 / whole(shown.len());
                 let points = stability.deviations_mm.iter().enumerate();
                 plot.mark(look.markers(points.map(|(idx, deviation)| [whole(idx) + aside, deviation[axis]]).collect()));
+                let (at, std) = ([limits + aside, stability.mean_mm[axis]], stability.three_std_mm()[axis]);
+                plot.mark(Mark::ErrorBar { at, std, stroke: Stroke::new(1.0, look.look.color) });
+                plot.mark(look.markers(vec![at]));
             }
             plot
         })

@@ -6,7 +6,7 @@ use crate::report::evidence::TargetEvidence;
 use crate::report::figure::frame::whole;
 use crate::report::figure::ink::Stroke;
 use crate::report::figure::model::station_bars;
-use crate::report::figure::palette::{self, Marker, Rgb};
+use crate::report::figure::palette::{self, Marker};
 use crate::report::figure::plot::{Axis, Dash, Entry, Filling, Mark, Plot, Sign};
 use crate::report::figure::{Extent, Figure};
 use crate::text::diagnosis_panel as shared;
@@ -149,11 +149,5 @@ fn normality_plot(normality: &Normality) -> Plot {
 }
 
 const fn dots(points: Vec<[f64; 2]>) -> Mark {
-    Mark::Markers {
-        points,
-        shape: Marker::Circle,
-        radius: 1.6,
-        fill: Some(palette::INLIER),
-        stroke: Stroke::new(0.3, Rgb::WHITE),
-    }
+    Mark::Dots { points, radius: 1.4, color: palette::INLIER, is_hollow: false }
 }

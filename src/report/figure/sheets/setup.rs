@@ -47,6 +47,9 @@ fn sketch(evidence: &Evidence) -> Option<Figure> {
         let name = (poses.len() <= MOST_NAMED).then_some(*label);
         scene.triad(pose, Triad { name, is_strong: false });
         let base_from_sensor = if is_fixed { *sensor } else { **pose * *sensor };
+        if !is_fixed {
+            scene.holder(pose.translation.vector, base_from_sensor.translation.vector);
+        }
         if place < MOST_LASER_PLANES && (place == 0 || !is_fixed) {
             if let Some(line) = laser_line(target, *idx) {
                 let ends = line.map(|end| in_base(&base_from_sensor, end));
