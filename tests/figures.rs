@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 
 use handeye::geometry::{Transform, Vec3};
 use handeye::report::evidence::Evidence;
-use handeye::report::figure::ink::{Align, Area, Label};
+use handeye::report::figure::ink::{Align, Area, Ink, Label};
 use handeye::report::figure::palette::Rgb;
 use handeye::report::figure::typeface::{Weight, has_all};
 use handeye::report::figure::{Figure, figures_of};
@@ -231,6 +231,21 @@ fn words_stay_on_the_page_and_off_each_other() {
             }
         }
     }
+}
+
+#[test]
+fn words_on_each_other_would_be_seen() {
+    let label = |text: &str, x: f64| {
+        let (align, weight, color) = (Align::Start, Weight::Regular, Rgb(0, 0, 0));
+        Ink::Label(Label { text: text.to_owned(), at: [x, 20.0], align, size: 8.0, weight, color, is_upright: false })
+    };
+    let overlaps = |second_at: f64| {
+        let figure = Figure::new("x", "x", "x", [200, 40], vec![label("Hamburg", 10.0), label("Bremen", second_at)]);
+        let texts = texts(&elements(&figure.svg().expect("drawn")));
+        texts[0].1.overlaps(&texts[1].1)
+    };
+    assert!(overlaps(10.0) && overlaps(40.0));
+    assert!(!overlaps(60.0), "Hamburg is 35 points wide at this size");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! What calibrations are worth on other data: distances to lines and plane, a known point, other targets.
 
 use crate::calibrate::Problem;
+use crate::geometry::Vec3;
 use crate::report::figure::frame::whole;
 use crate::report::figure::ink::Stroke;
 use crate::report::figure::palette::{self, CalibrationLook, Marker, Rgb, calibration_look};
@@ -8,7 +9,7 @@ use crate::report::figure::plot::{Axis, Dash, Entry, Mark, Plot, Sign};
 use crate::report::figure::{Extent, Figure};
 use crate::text::figures as words;
 use crate::text::verify as shared;
-use crate::verify::{Distances, Measurement, Stability, TargetEvidence, Verification};
+use crate::verify::{Distances, EdgePoint, Measurement, TargetEvidence, Verification};
 
 use super::bars::{self, entry_of, filling_of, histogram};
 use super::sheet::Sheet;
@@ -92,10 +93,10 @@ fn distances(target: &TargetEvidence, looks: &[Look], suffix: &str) -> Option<Fi
     let legend: Vec<Entry> = shown.iter().map(|(look, _)| look.entry()).collect();
     let mut sheet = Sheet::new(220.0);
     let areas = sheet.legend_over_columns(&legend);
-    let kinds: [(&str, &str, fn(&crate::verify::EdgePoint) -> f64); 2] = [
-        (shared::LINE_HISTOGRAM, shared::LINE_AXIS, |point| point.to_line_mm),
-        (shared::PLANE_HISTOGRAM, shared::PLANE_AXIS, |point| point.to_plane_mm),
-    ];
+    let to_line: fn(&EdgePoint) -> f64 = |point| point.to_line_mm;
+    let to_plane: fn(&EdgePoint) -> f64 = |point| point.to_plane_mm;
+    let kinds =
+        [(shared::LINE_HISTOGRAM, shared::LINE_AXIS, to_line), (shared::PLANE_HISTOGRAM, shared::PLANE_AXIS, to_plane)];
     for ((heading, x_title, distance), area) in kinds.into_iter().zip(areas) {
         let all: Vec<bars::Distances> = shown
             .iter()
@@ -103,7 +104,7 @@ fn distances(target: &TargetEvidence, looks: &[Look], suffix: &str) -> Option<Fi
                 color: look.look.color,
                 filling: filling_of(&look.look),
                 marker: Some(look.look.marker),
-                distances_mm: distances.points.iter().map(distance).collect(),
+                mm: distances.points.iter().map(distance).collect(),
             })
             .collect();
         let mut plot = histogram(x_title, shared::POINTS_AXIS, &all);
@@ -115,12 +116,12 @@ fn distances(target: &TargetEvidence, looks: &[Look], suffix: &str) -> Option<Fi
 }
 
 fn stability(target: &TargetEvidence, looks: &[Look], suffix: &str) -> Option<Figure> {
-    let found: Vec<(f64, (&Look, &[Measurement], &Stability))> = looks
+    let found: Vec<_> = looks
         .iter()
         .zip(&target.rows)
         .filter_map(|(look, row)| {
             let (measurements, stability) = row.as_ref().ok()?.stability()?;
-            let reach = stability.deviations_mm.iter().map(|deviation| deviation.norm()).fold(0.0, f64::max);
+            let reach = stability.deviations_mm.iter().map(Vec3::norm).fold(0.0, f64::max);
             Some((reach, (look, measurements, stability)))
         })
         .collect();
@@ -132,7 +133,7 @@ fn stability(target: &TargetEvidence, looks: &[Look], suffix: &str) -> Option<Fi
     let names: Vec<String> = measurements.iter().map(Measurement::name).collect();
     let mut reach_mm = 0.001_f64;
     for (_, _, stability) in &shown {
-        let largest = stability.deviations_mm.iter().map(|deviation| deviation.amax());
+        let largest = stability.deviations_mm.iter().map(Vec3::amax);
         reach_mm = largest
             .chain([(stability.mean_mm.abs() + stability.three_std_mm()).amax()])
             .filter(|size| size.is_finite())

@@ -50,11 +50,10 @@ fn sketch(evidence: &Evidence) -> Option<Figure> {
         if !is_fixed {
             scene.holder(pose.translation.vector, base_from_sensor.translation.vector);
         }
-        if place < MOST_LASER_PLANES && (place == 0 || !is_fixed) {
-            if let Some(line) = laser_line(target, *idx) {
-                let ends = line.map(|end| in_base(&base_from_sensor, end));
-                scene.laser_plane(base_from_sensor.translation.vector, ends);
-            }
+        let has_plane = place < MOST_LASER_PLANES && (place == 0 || !is_fixed);
+        if let Some(line) = laser_line(target, *idx).filter(|_| has_plane) {
+            let ends = line.map(|end| in_base(&base_from_sensor, end));
+            scene.laser_plane(base_from_sensor.translation.vector, ends);
         }
         if is_fixed {
             mark_target(&mut scene, session, solution, Some(pose));

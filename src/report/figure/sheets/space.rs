@@ -227,7 +227,7 @@ impl View {
                 let along = [end[0] - origin[0], end[1] - origin[1]];
                 let length = along[0].hypot(along[1]).max(1e-9);
                 let at = [0, 1].map(|axis| end[axis] + along[axis] / length * 6.0);
-                self.name(letter, at, color, room, page);
+                name_at(letter, at, color, room, page);
             }
         }
         if let Some(name) = name {
@@ -242,25 +242,12 @@ impl View {
                     // A wide name stands farther off sideways.
                     let aside = distance + (typeface::width(name, TEXT_SIZE, Weight::Regular) / 2.0 - 3.0).max(0.0);
                     let at = [origin[0] + along[0] * aside, origin[1] + along[1] * distance];
-                    if self.name(name, at, palette::TEXT, room, page) {
+                    if name_at(name, at, palette::TEXT, room, page) {
                         return;
                     }
                 }
             }
         }
-    }
-
-    /// Writes a name about a place if nothing else is written there.
-    fn name(&self, text: &str, [x, y]: Place, color: Rgb, room: &Area, page: &mut Page) -> bool {
-        let mut label = label(text, [x, on_middle(y, TEXT_SIZE)], color);
-        label.align = Align::Middle;
-        let area = label.area();
-        let is_free = room.holds_all(&area) && page.is_free(&area.grown(0.5));
-        if is_free {
-            page.area(area.outline().to_vec(), Fill::veil(Rgb::WHITE, 0.6));
-            page.write(label);
-        }
-        is_free
     }
 
     /// A length to compare with, at the lower right.
@@ -279,4 +266,17 @@ impl View {
         label.align = Align::Middle;
         page.write(label);
     }
+}
+
+/// Writes a name about a place if nothing else is written there.
+fn name_at(text: &str, [x, y]: Place, color: Rgb, room: &Area, page: &mut Page) -> bool {
+    let mut label = label(text, [x, on_middle(y, TEXT_SIZE)], color);
+    label.align = Align::Middle;
+    let area = label.area();
+    let is_free = room.holds_all(&area) && page.is_free(&area.grown(0.5));
+    if is_free {
+        page.area(area.outline().to_vec(), Fill::veil(Rgb::WHITE, 0.6));
+        page.write(label);
+    }
+    is_free
 }

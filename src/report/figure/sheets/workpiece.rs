@@ -38,7 +38,7 @@ fn planes(part: &PartEvidence) -> Option<Figure> {
             color: region_color(*idx),
             filling,
             marker: None,
-            distances_mm: region.distances_mm.iter().map(|distance| distance.abs()).collect(),
+            mm: region.distances_mm.iter().map(|distance| distance.abs()).collect(),
         })
         .collect();
     let mut plot = histogram(words::PLANE_DISTANCE_AXIS, crate::text::verify::POINTS_AXIS, &all);
@@ -62,7 +62,7 @@ fn teeth_figure(part: &PartEvidence, teeth: &Teeth) -> Option<Figure> {
     let pitch = values_plot(&values(|tooth| tooth.pitch), num_teeth, pitch_mm, words::PITCH_AXIS);
     let height = values_plot(&values(|tooth| tooth.height), num_teeth, height_mm, words::HEIGHT_AXIS);
     let mut plots: Vec<Plot> = pitch.into_iter().chain(height).collect();
-    plots.last_mut()?.x.title = words::TOOTH_AXIS.to_owned();
+    words::TOOTH_AXIS.clone_into(&mut plots.last_mut()?.x.title);
     let mut legend =
         vec![Entry::new(Sign::Solid(Marker::Circle), palette::INLIER, crate::text::arcs::MEASURED.to_owned() + " ± σ")];
     if pitch_mm.or(height_mm).is_some() {
