@@ -186,11 +186,12 @@ fn an_edit_is_undone_and_redone_with_keys_and_buttons() {
 #[test]
 fn digits_and_arrows_move_through_the_window() {
     let mut harness = window_with("few-rotations.json");
-    let keys = [Key::Num5, Key::Num6, Key::Num7, Key::Num2, Key::Num3, Key::Num1, Key::Num4];
+    let keys = [Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num2, Key::Num3, Key::Num1, Key::Num4];
     for (key, step) in keys.into_iter().zip([
         Step::Compare,
         Step::Diagnosis,
         Step::Verify,
+        Step::Report,
         Step::Capture,
         Step::Arcs,
         Step::Session,

@@ -1,6 +1,7 @@
 //! Everything a user can ask the workbench to do.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use crate::calibrate::SideChoice;
 use crate::diagnose::Remedy;
@@ -10,6 +11,7 @@ use crate::session::{Edit, Target};
 use crate::verify::Calibration;
 
 use super::cell::CellCommand;
+use super::workbench::NoticeKind;
 use super::workbench::scans::ScanCommand;
 
 impl Command {
@@ -98,6 +100,13 @@ pub enum Command {
     ExportPoses(PathBuf),
     /// Writes the profiles as CSV, one a file, into a folder.
     ExportProfiles(PathBuf),
+    /// Writes a file that the window has made: a tool frame, a picture.
+    WriteFile {
+        /// Where to. Whoever asked for it has asked about a file that is there.
+        path: PathBuf,
+        /// What stands in it.
+        contents: Arc<[u8]>,
+    },
     /// Lets a station take part or not.
     SetStationEnabled {
         /// Index of the station.
@@ -149,6 +158,8 @@ pub enum Command {
     Scan(Box<ScanCommand>),
     /// Something for the live cell.
     Cell(Box<CellCommand>),
+    /// Says that something was done, or could not be.
+    Tell(NoticeKind, String),
     /// Removes a notice.
     DismissNotice(u64),
 }

@@ -63,7 +63,7 @@ pub enum Command {
     Simulate(simulate::SimulateArgs),
     /// Serves a simulated cell on loopback with the real wire protocols, until stopped
     Cell(cell::CellArgs),
-    /// Not available in this version: says what to use instead
+    /// Writes a report to read, print and sign: a page, tables, the result file, texts for the controller
     Report(report::ReportArgs),
     /// Draws a step of the window into a PNG file, without a display
     Screenshot(screenshot::ScreenshotArgs),

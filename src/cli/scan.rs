@@ -5,9 +5,9 @@ use std::process::ExitCode;
 
 use serde_json::Value;
 
-use crate::app::workbench::scans::best_calibration;
 use crate::geometry::{Flange, Sensor, Transform, Vec3};
-use crate::report::calibration_file::read_calibration;
+use crate::report::best_solution;
+use crate::report::calibration_file::{NamedCalibration, read_calibration};
 use crate::report::scan_file::scan_file;
 use crate::scan::files::{CloudFormat, read_cloud, write_cloud};
 use crate::scan::{Cloud, PointSet, Region, RoundKind, SegmentOptions, Wanted, plane_regions, region_name, shapes};
@@ -151,8 +151,9 @@ fn from_session(args: &ScanArgs) -> Result<(String, Vec<Case>), Refusal> {
             });
             read.named()
         }
-        None => best_calibration(&session, &mut Unwatched)
+        None => best_solution(&session, &mut Unwatched)
             .unwrap_or_else(|cancelled| Err(cancelled.to_string()))
+            .map(|solution| NamedCalibration::of(&solution))
             .map_err(|reason| (EXIT_NOTHING_COMPUTED, words::no_calibration(&reason)))?,
     };
     let case = |scan| case_of(scan, &calibration.name, &calibration.flange_from_sensor);

@@ -50,6 +50,8 @@ pub enum StepName {
     Diagnosis,
     /// What the calibration is worth on other data
     Verify,
+    /// The report and the tool frame
+    Report,
 }
 
 /// The themes by their names on the command line.
@@ -80,6 +82,7 @@ impl From<StepName> for Step {
             StepName::Compare => Self::Compare,
             StepName::Diagnosis => Self::Diagnosis,
             StepName::Verify => Self::Verify,
+            StepName::Report => Self::Report,
         }
     }
 }

@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use crate::calibrate::best_available;
+use crate::report::best_solution;
 use crate::report::calibration_file::read_calibration;
 use crate::report::tool_frame::{Format, Name, Parent, ToolFrame, formats};
+use crate::session;
 use crate::session::export::write_text;
-use crate::session::{self, measure};
 use crate::text::tool_frame as words;
 use crate::watch::Unwatched;
 
@@ -75,14 +75,10 @@ fn frame_of(file: &Path, args: &ToolFrameArgs) -> Result<ToolFrame, Refusal> {
         });
     }
     let session = session::load(file).map_err(|error| (EXIT_WRONG_INPUT, error.to_string()))?;
-    let computed = |reason: String| (EXIT_NOTHING_COMPUTED, reason);
-    let measured = measure(&session, None, &mut Unwatched).map_err(|cancelled| computed(cancelled.to_string()))?;
-    let problem = session::problem(&session, &measured).map_err(|refusal| computed(refusal.to_string()))?;
-    let results =
-        problem.solve_all(problem.methods(), &mut Unwatched).map_err(|cancelled| computed(cancelled.to_string()))?;
-    let reason = || results.iter().find_map(|result| result.outcome.as_ref().err()).map(ToString::to_string);
-    let best = best_available(&results).ok_or_else(|| computed(reason().unwrap_or_default()))?;
-    Ok(ToolFrame::of_solution(best, session.mount, name, args.number))
+    let best = best_solution(&session, &mut Unwatched)
+        .unwrap_or_else(|cancelled| Err(cancelled.to_string()))
+        .map_err(|reason| (EXIT_NOTHING_COMPUTED, reason))?;
+    Ok(ToolFrame::of_solution(&best, name, args.number))
 }
 
 fn written(args: &ToolFrameArgs, frame: &ToolFrame) -> Result<String, Refusal> {

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 use thiserror::Error;
 
-use crate::calibrate::Mount;
+use crate::calibrate::{Mount, Solution};
 use crate::geometry::{Flange, Mat3, Sensor, Transform, Vec3};
 use crate::text::verify::nearest_of;
 use crate::verify::{GivenMatrix, MatrixCheck, MatrixRefusal, parse_matrix};
@@ -73,10 +73,18 @@ pub enum CalibrationFileError {
 /// A calibration and what it is called.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedCalibration {
-    /// The file's name, and the method in it.
+    /// The file's name, and the method in it; or the method alone.
     pub name: String,
     /// The calibration; `base_from_sensor` for a sensor beside the robot.
     pub flange_from_sensor: Transform<Flange, Sensor>,
+}
+
+impl NamedCalibration {
+    /// That of a solution, called after its method.
+    #[must_use]
+    pub fn of(solution: &Solution) -> Self {
+        Self { name: solution.method.id().to_owned(), flange_from_sensor: solution.flange_from_sensor }
+    }
 }
 
 /// A calibration from a file, and whether what stood there is one.

@@ -84,9 +84,12 @@ pub fn poses_csv(session: &Session, notation: &PoseNotation, style: TableStyle) 
         .map(str::to_owned)
         .chain(position)
         .chain(orientation)
-        .chain(["point_x_mm", "point_y_mm", "point_z_mm", "profile"].map(str::to_owned))
+        .chain(["point_x_mm", "point_y_mm", "point_z_mm", "profile", "notation"].map(str::to_owned))
         .collect();
+    // In every row, as people sort and cut tables.
+    let notation_text = notation.text();
     let rows = session.stations.iter().enumerate().flat_map(|(station_idx, station)| {
+        let notation_text = &notation_text;
         station.captures.iter().enumerate().map(move |(capture_idx, capture)| {
             let side = match station.side {
                 SideChoice::Auto => "auto",
@@ -110,6 +113,7 @@ pub fn poses_csv(session: &Session, notation: &PoseNotation, style: TableStyle) 
                     row.push(if profile.is_empty() { String::new() } else { profile_file_name(place) });
                 }
             }
+            row.push(notation_text.clone());
             row
         })
     });
@@ -150,6 +154,14 @@ pub enum ExportError {
 /// # Errors
 /// [`ExportError::Exists`] unless `overwrite`, [`ExportError::Unwritable`].
 pub fn write_text(path: &Path, text: &str, overwrite: bool) -> Result<(), ExportError> {
+    write_bytes(path, text.as_bytes(), overwrite)
+}
+
+/// Writes bytes to a file of their own.
+///
+/// # Errors
+/// As for [`write_text`].
+pub fn write_bytes(path: &Path, bytes: &[u8], overwrite: bool) -> Result<(), ExportError> {
     let file = || path.display().to_string();
     let mut options = fs::OpenOptions::new();
     options.write(true);
@@ -158,7 +170,7 @@ pub fn write_text(path: &Path, text: &str, overwrite: bool) -> Result<(), Export
     } else {
         options.create_new(true)
     };
-    let written = options.open(path).and_then(|mut opened| opened.write_all(text.as_bytes()));
+    let written = options.open(path).and_then(|mut opened| opened.write_all(bytes));
     written.map_err(|error| match error.kind() {
         io::ErrorKind::AlreadyExists => ExportError::Exists { file: file() },
         _ => ExportError::Unwritable { file: file(), problem: error.to_string() },

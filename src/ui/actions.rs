@@ -222,7 +222,7 @@ pub fn pressed(ctx: &egui::Context, workbench: &Workbench) -> Vec<Action> {
         .collect();
     // Plain digits belong to a text field while it has the focus.
     if !ctx.egui_wants_keyboard_input() {
-        let digits = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7];
+        let digits = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8];
         pressed.extend(Step::ALL.into_iter().zip(digits).filter_map(|(step, key)| {
             ctx.input_mut(|input| input.consume_key(Modifiers::NONE, key)).then_some(Action::GoTo(step))
         }));

@@ -260,7 +260,7 @@ pub fn help(ctx: &Context, workbench: &Workbench, open: &mut bool) {
                     }
                 }
                 key_row(ui, import_words::PASTE_KEYS, import_words::PASTE);
-                key_row(ui, "1 … 7", words::KEYS_RAIL);
+                key_row(ui, "1 … 8", words::KEYS_RAIL);
                 key_row(ui, capture_words::STOP_KEYS, capture_words::STOP_KEYS_HINT);
                 key_row(ui, "↑ ↓", words::KEYS_LIST);
                 key_row(ui, "← →", words::KEYS_STEPS);

@@ -7,8 +7,8 @@ use std::time::{Duration, Instant};
 
 use crate::app::jobs::Wake;
 use crate::text::{
-    capture as capture_words, import as import_words, shell as words, verify as verify_words,
-    workpiece as workpiece_words,
+    capture as capture_words, import as import_words, report_panel as report_words, shell as words,
+    tool_frame as tool_frame_words, verify as verify_words, workpiece as workpiece_words,
 };
 
 /// Nobody cancels a dialog faster than this; so quick a "nothing chosen" means that no dialog came up.
@@ -41,11 +41,15 @@ pub enum Purpose {
     Calibration,
     /// Choosing the folder that a profiler's software saves profiles into.
     WatchedFolder,
+    /// Choosing a file to write a tool frame to.
+    ToolFrame,
+    /// Choosing a file to write the picture of a plot to.
+    Picture,
 }
 
 /// Files of poses and profiles by their endings.
-const IMPORT_ENDINGS: [&str; 12] =
-    ["csv", "tsv", "txt", "ls", "mod", "src", "dat", "script", "urscript", "yaml", "yml", "json"];
+const IMPORT_ENDINGS: [&str; 14] =
+    ["csv", "tsv", "txt", "ls", "mod", "src", "dat", "script", "urscript", "yaml", "yml", "json", "mcap", "db3"];
 
 impl Purpose {
     /// The heading where a path is typed for it.
@@ -63,6 +67,8 @@ impl Purpose {
             Self::OpenPoints => workpiece_words::OPEN_POINTS_TITLE,
             Self::Calibration => workpiece_words::CALIBRATION_TITLE,
             Self::WatchedFolder => capture_words::FOLDER_TITLE,
+            Self::ToolFrame => tool_frame_words::SAVE_TITLE,
+            Self::Picture => report_words::PICTURE_TITLE,
         }
     }
 
@@ -72,7 +78,7 @@ impl Purpose {
         match self {
             Self::Open | Self::OpenPoints => words::OPEN,
             Self::Calibration => workpiece_words::USE_BUTTON,
-            Self::Save => words::SAVE,
+            Self::Save | Self::ToolFrame | Self::Picture => words::SAVE,
             Self::ImportFiles | Self::ImportFolder | Self::AddSession => import_words::IMPORT_BUTTON,
             Self::AddFurther => verify_words::ADD_TARGET_BUTTON,
             Self::ExportPoses | Self::ExportProfiles | Self::ExportPoints => import_words::EXPORT_BUTTON,
@@ -83,7 +89,7 @@ impl Purpose {
     /// Whether a file is written, so that one that is there is replaced.
     #[must_use]
     pub const fn writes_a_file(self) -> bool {
-        matches!(self, Self::Save | Self::ExportPoses | Self::ExportPoints)
+        matches!(self, Self::Save | Self::ExportPoses | Self::ExportPoints | Self::ToolFrame | Self::Picture)
     }
 }
 
@@ -172,6 +178,7 @@ fn ask(purpose: Purpose, suggested_name: &str) -> Answer {
             all(dialog).pick_file().map(one)
         }
         Purpose::Calibration => all(dialog).pick_file().map(one),
+        Purpose::ToolFrame | Purpose::Picture => all(dialog).set_file_name(suggested_name).save_file().map(one),
         Purpose::ImportFolder | Purpose::ExportProfiles | Purpose::WatchedFolder => dialog.pick_folder().map(one),
     };
     match chosen.filter(|paths| !paths.is_empty()) {

@@ -8,6 +8,7 @@ use crate::device::LinkState;
 use crate::diagnose::{Severity, verdict_with};
 use crate::text::capture as capture_words;
 use crate::text::methods::verdict_mark;
+use crate::text::report_panel as report_words;
 use crate::text::shell as words;
 
 use super::actions::Action;
@@ -37,12 +38,22 @@ pub enum Step {
     Diagnosis,
     /// What the calibration is worth on other data.
     Verify,
+    /// What leaves the program.
+    Report,
 }
 
 impl Step {
     /// All steps in the order of the rail.
-    pub const ALL: [Self; 7] =
-        [Self::Session, Self::Capture, Self::Arcs, Self::Poses, Self::Compare, Self::Diagnosis, Self::Verify];
+    pub const ALL: [Self; 8] = [
+        Self::Session,
+        Self::Capture,
+        Self::Arcs,
+        Self::Poses,
+        Self::Compare,
+        Self::Diagnosis,
+        Self::Verify,
+        Self::Report,
+    ];
 
     /// The step's name.
     #[must_use]
@@ -55,6 +66,7 @@ impl Step {
             Self::Compare => words::STEP_COMPARE,
             Self::Diagnosis => words::STEP_DIAGNOSIS,
             Self::Verify => words::STEP_VERIFY,
+            Self::Report => report_words::STEP,
         }
     }
 
@@ -67,6 +79,7 @@ impl Step {
             Self::Compare => words::STEP_COMPARE_HINT,
             Self::Diagnosis => words::STEP_DIAGNOSIS_HINT,
             Self::Verify => words::STEP_VERIFY_HINT,
+            Self::Report => report_words::STEP_HINT,
         }
     }
 }
@@ -178,7 +191,7 @@ fn mark(workbench: &Workbench, selection: &Selection, num_pose_remarks: usize, s
     };
     match step {
         Step::Session => Mark::Fine("✔".to_owned()),
-        Step::Capture => Mark::None,
+        Step::Capture | Step::Report => Mark::None,
         Step::Verify => verify_mark(workbench),
         // Nothing is no reason for a tick, nor for a cross.
         Step::Arcs | Step::Poses | Step::Compare | Step::Diagnosis if document.session.stations.is_empty() => {

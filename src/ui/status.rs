@@ -9,6 +9,7 @@ use crate::session::{Reading, Target};
 use crate::text::capture as capture_words;
 use crate::text::diagnosis_panel as panel_words;
 use crate::text::import as import_words;
+use crate::text::report_panel as report_words;
 use crate::text::shell as words;
 use crate::text::start::captures as captures_text;
 
@@ -61,6 +62,10 @@ fn next(workbench: &Workbench, step: Step) -> Option<(String, Action)> {
         };
         return Some((label.to_owned(), action));
     }
+    if step == Step::Report {
+        // The last step; what is wrong stands in the report itself.
+        return None;
+    }
     let is_serious = |finding: &&Finding| finding.severity != Severity::Note;
     let findings = workbench.current_diagnosis().map_or(&[][..], |diagnosis| &diagnosis.findings);
     let num_findings = findings.iter().filter(is_serious).count();
@@ -75,9 +80,8 @@ fn next(workbench: &Workbench, step: Step) -> Option<(String, Action)> {
         Step::Arcs => (words::NEXT_POSES, Action::GoTo(Step::Poses)),
         Step::Poses => (words::NEXT_COMPARE, Action::GoTo(Step::Compare)),
         Step::Compare => (words::NEXT_DIAGNOSIS, Action::GoTo(Step::Diagnosis)),
-        Step::Diagnosis | Step::Verify => {
-            return document.is_unsaved().then(|| (words::NEXT_SAVE.to_owned(), Action::Save));
-        }
+        Step::Diagnosis | Step::Verify if document.is_unsaved() => (words::NEXT_SAVE, Action::Save),
+        Step::Diagnosis | Step::Verify | Step::Report => (report_words::NEXT_REPORT, Action::GoTo(Step::Report)),
     };
     Some((label.to_owned(), action))
 }

@@ -12,7 +12,7 @@ use crate::text::{capture as capture_words, conventions, shell as words};
 use super::actions::Action;
 use super::persisted::{Persisted, ThemeChoice};
 use super::rail::Step;
-use super::{theme, widgets};
+use super::{save_picture, theme, widgets};
 
 /// Scales on offer.
 const SCALES: [f32; 6] = [0.8, 0.9, 1.0, 1.25, 1.5, 2.0];
@@ -55,6 +55,7 @@ fn menus(ui: &mut Ui, workbench: &Workbench, persisted: &mut Persisted, actions:
         item(ui, workbench, Action::SaveAs, actions);
         item(ui, workbench, Action::ExportPoses, actions);
         item(ui, workbench, Action::ExportProfiles, actions);
+        save_picture::menu(ui);
         ui.separator();
         item(ui, workbench, Action::Close, actions);
         item(ui, workbench, Action::Quit, actions);

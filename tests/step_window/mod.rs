@@ -1,5 +1,7 @@
 //! What tests of a step in the whole window share: it is driven by the names that screen readers see.
 
+#![allow(dead_code, reason = "each test of a step takes what it needs")]
+
 use std::time::{Duration, Instant};
 
 use egui_kittest::Harness;
@@ -25,8 +27,8 @@ pub fn settle(harness: &mut Harness<'static, Window>) {
     harness.run_steps(3);
 }
 
-/// The window with a session, at Verify.
-pub fn window_of_size(session: Session, size: [f32; 2]) -> Harness<'static, Window> {
+/// The window with a session, at a step.
+pub fn window_at(step: Step, session: Session, size: [f32; 2]) -> Harness<'static, Window> {
     let mut harness = Harness::builder()
         .with_size(size)
         .with_os(egui::os::OperatingSystem::Nix)
@@ -34,9 +36,14 @@ pub fn window_of_size(session: Session, size: [f32; 2]) -> Harness<'static, Wind
     let shell = harness.state_mut().shell_mut();
     shell.workbench_mut().open_session(session, None);
     settle(&mut harness);
-    harness.state_mut().shell_mut().go_to(Step::Verify);
+    harness.state_mut().shell_mut().go_to(step);
     settle(&mut harness);
     harness
+}
+
+/// The window with a session, at Verify.
+pub fn window_of_size(session: Session, size: [f32; 2]) -> Harness<'static, Window> {
+    window_at(Step::Verify, session, size)
 }
 
 pub fn window_on(session: Session) -> Harness<'static, Window> {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::app::jobs::JobOutcome;
 use crate::session::Session;
 use crate::session::export::{self, ExportError, TableStyle};
-use crate::text::import as words;
+use crate::text::{import as words, report_panel as report_words};
 
 use super::{NoticeKind, Workbench};
 
@@ -28,6 +28,14 @@ impl Workbench {
         self.start_export(move |session| {
             let num_profiles = export::write_profiles(session, &folder, TableStyle::default(), false)?;
             Ok(words::exported_profiles(num_profiles, &folder.display().to_string()))
+        });
+    }
+
+    /// A file that the window has made.
+    pub(super) fn write_file(&mut self, path: PathBuf, contents: Arc<[u8]>) {
+        self.exporting.start("write a file", &self.wake, move |_| {
+            export::write_bytes(&path, &contents, true)?;
+            Ok(report_words::wrote(&path.display().to_string()))
         });
     }
 

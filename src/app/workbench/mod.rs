@@ -285,6 +285,7 @@ impl Workbench {
             Command::CancelImport => self.cancel_import(),
             Command::ExportPoses(path) => self.export_poses(path),
             Command::ExportProfiles(folder) => self.export_profiles(folder),
+            Command::WriteFile { path, contents } => self.write_file(path, contents),
             Command::SetStationEnabled { station_idx, enabled } => {
                 self.edit_station(station_idx, CellValue::Used(enabled));
             }
@@ -310,6 +311,7 @@ impl Workbench {
             Command::WithdrawCalibration(name) => self.withdraw_calibration(&name),
             Command::Scan(command) => self.command_scans(*command),
             Command::Cell(command) => self.command_cell(*command),
+            Command::Tell(kind, message) => self.notify(kind, message),
             Command::DismissNotice(id) => self.notices.retain(|notice| notice.id != id),
         }
     }

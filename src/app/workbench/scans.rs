@@ -6,15 +6,16 @@ use std::sync::Arc;
 use crate::app::jobs::{JobOutcome, JobWatch, Slot};
 use crate::calibrate::{Method, best_available, solution_of};
 use crate::geometry::{Flange, Sensor, Transform, Vec3};
+use crate::report::best_solution;
 use crate::report::calibration_file::{NamedCalibration, ReadCalibration, read_calibration};
 use crate::scan::files::{CloudFormat, read_cloud, write_cloud};
 use crate::scan::{
     Cloud, PointSet, Region, SegmentOptions, Shapes, Wanted, grow_plane, plane_regions, region_name, shapes,
     suitable_tolerance_mm,
 };
-use crate::session::{self, Known, Session, measure};
+use crate::session::{Known, Session};
 use crate::text::workpiece as words;
-use crate::watch::{Cancelled, Watch};
+use crate::watch::Watch;
 
 use super::{NoticeKind, Progress, Workbench};
 
@@ -298,9 +299,11 @@ impl Workbench {
         self.scans.working.start("examine scan", &self.wake, move |watch| {
             let found = match (&calibration, results) {
                 (ScanCalibration::Best, Some(results)) if best_available(&results.methods).is_some() => {
-                    best_available(&results.methods).map(named)
+                    best_available(&results.methods).map(NamedCalibration::of)
                 }
-                (ScanCalibration::Of(method), Some(results)) => solution_of(&results.methods, *method).map(named),
+                (ScanCalibration::Of(method), Some(results)) => {
+                    solution_of(&results.methods, *method).map(NamedCalibration::of)
+                }
                 _ => None,
             };
             let found = match found {
@@ -433,10 +436,6 @@ impl Workbench {
     }
 }
 
-fn named(solution: &crate::calibrate::Solution) -> NamedCalibration {
-    NamedCalibration { name: solution.method.id().to_owned(), flange_from_sensor: solution.flange_from_sensor }
-}
-
 fn calibration_of(
     session: &Session,
     calibration: &ScanCalibration,
@@ -453,32 +452,9 @@ fn calibration_of(
         }
         ScanCalibration::Verified(named) => Ok(named.clone()),
         ScanCalibration::Of(method) => Err(words::no_calibration(&words::no_result_of(*method))),
-        ScanCalibration::Best => best_calibration(session, watch)
+        ScanCalibration::Best => best_solution(session, watch)
             .map_err(|cancelled| cancelled.to_string())?
+            .map(|solution| NamedCalibration::of(&solution))
             .map_err(|reason| words::no_calibration(&reason)),
     }
-}
-
-/// The best result of the session's own target, or of the first further one that has any; otherwise why there is none.
-///
-/// # Errors
-/// [`Cancelled`].
-pub fn best_calibration(
-    session: &Session,
-    watch: &mut dyn Watch,
-) -> Result<Result<NamedCalibration, String>, Cancelled> {
-    let measured = measure(session, None, watch)?;
-    let own = session::problem(session, &measured);
-    let further = (0..session.further.len()).map(|idx| session::problem_of(session, &measured, idx));
-    let mut reason = words::ONLY_A_WORKPIECE.to_owned();
-    for problem in std::iter::once(own).chain(further).flatten() {
-        let results = problem.solve_all(problem.methods(), watch)?;
-        if let Some(solution) = best_available(&results) {
-            return Ok(Ok(named(solution)));
-        }
-        if let Some(error) = results.iter().find_map(|result| result.outcome.as_ref().err()) {
-            reason = error.to_string();
-        }
-    }
-    Ok(Err(reason))
 }

@@ -7,7 +7,7 @@ use crate::diagnose::{Diagnosis, verdict_with};
 use crate::geometry::{Flange, Sensor, Transform};
 use crate::report::compare::{distance_from_truth, improvement, maximum_error_mm};
 use crate::report::digits::{decimals_for, fixed, signed};
-use crate::session::{Session, Target};
+use crate::session::Session;
 use crate::text;
 use crate::text::conventions::not_known_apart;
 
@@ -96,34 +96,20 @@ fn overview(out: &mut String, session: &Session, results: &[MethodResult]) {
         )
         .ok();
     }
-    out.push_str(match session.target {
-        Target::RightAnglePlate => {
-            "max: largest distance of a point from its edge · RMS: of these distances\n\
-             left out: each station predicted by the others, RMS · σ point: 1 σ of a point in the workspace, 3D\n"
-        }
-        Target::Point => {
-            "max: largest coordinate relative to the first station · RMS: scatter of the tip about its place, 3D\n\
-             left out: each station predicted by the others, RMS · σ point: 1 σ of a point in the workspace, 3D\n"
-        }
-        Target::Ball { .. } | Target::Workpiece | Target::Rgbd { .. } => {
-            "max: largest coordinate relative to the first station · RMS: scatter of the ball about its place, 3D\n\
-             left out: each station predicted by the others, RMS · σ point: 1 σ of a point in the workspace, 3D\n"
-        }
-    });
+    for line in text::report::errors_legend(&session.target) {
+        writeln!(out, "{line}").ok();
+    }
     if let Some(improvement) = improvement(results)
         && let Some(percent) = improvement.percent()
     {
-        writeln!(
-            out,
-            "{}: {} error {} mm, {} % against {} ({} mm)",
-            text::method_name(improvement.method),
-            if Method::PLATE.contains(&improvement.method) { "left-out" } else { "maximum" },
-            fixed(improvement.error_mm, 3),
-            signed(percent, 0),
-            text::method_short_name(improvement.baseline),
-            fixed(improvement.baseline_error_mm, 3)
-        )
-        .ok();
+        let line = text::report::improvement_line(
+            improvement.method,
+            &fixed(improvement.error_mm, 3),
+            &signed(percent, 0),
+            improvement.baseline,
+            &fixed(improvement.baseline_error_mm, 3),
+        );
+        writeln!(out, "{line}").ok();
     }
 }
 

@@ -32,7 +32,6 @@ pub enum ErrorReference {
 }
 
 /// What a method says about a station, or about a point on a plate's edge.
-#[expect(clippy::struct_field_names, reason = "every name carries its unit")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UsedStation {
     /// Ball, tip or edge point in the sensor frame of the capture, mm.

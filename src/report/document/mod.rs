@@ -2,6 +2,62 @@
 
 mod model;
 mod section;
+mod sections;
 
-pub use model::{Block, Cell, Column, Document, Fact, Finding, Section, Table, Verdict};
+use crate::text::report as words;
+
+use super::evidence::Evidence;
+
+pub use model::{Block, Cell, Column, Document, Fact, Finding, Section, Table, Verdict, typeset};
 pub use section::{Options, SectionId};
+pub use sections::tool_frames::{Export, exports};
+
+/// A file that a report was made from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct InputFile {
+    /// Its name, without its folder, which is another on every machine.
+    pub name: String,
+    /// Its size.
+    pub num_bytes: usize,
+    /// Its SHA-256, as `sha256sum` prints it.
+    pub sha256: String,
+}
+
+impl InputFile {
+    /// Of a file's bytes.
+    #[must_use]
+    pub fn new(name: String, bytes: &[u8]) -> Self {
+        Self { name, num_bytes: bytes.len(), sha256: super::checksum::sha256(bytes) }
+    }
+}
+
+/// Writes a report on what was computed of a session that is in these files.
+#[must_use]
+pub fn document(evidence: &Evidence, inputs: &[InputFile], options: &Options) -> Document {
+    let session = &evidence.session;
+    let name = session.name.trim();
+    let blocks = |id: SectionId| match id {
+        SectionId::Verdict => sections::verdict::blocks(evidence),
+        SectionId::Calibration => sections::calibration::blocks(evidence),
+        SectionId::Setup => sections::setup::blocks(evidence, options),
+        SectionId::Methods => sections::methods::blocks(evidence),
+        SectionId::Figures => Vec::new(),
+        SectionId::Diagnosis => sections::diagnosis::blocks(evidence),
+        SectionId::Validation => sections::validation::blocks(evidence),
+        SectionId::Verification => sections::verification::blocks(evidence),
+        SectionId::Stations => sections::stations::blocks(evidence),
+        SectionId::ToolFrames => sections::tool_frames::blocks(evidence),
+        SectionId::Inputs => sections::closing::inputs(inputs),
+        SectionId::References => sections::closing::references(evidence),
+        SectionId::Signature => sections::closing::signature(options),
+    };
+    let sections = SectionId::ALL.into_iter().filter(|id| options.sections.contains(id));
+    let sections = sections
+        .map(|id| Section { id, title: id.title().to_owned(), blocks: blocks(id) })
+        .filter(|section| !section.blocks.is_empty());
+    Document {
+        title: if name.is_empty() { words::UNNAMED.to_owned() } else { name.to_owned() },
+        subtitle: words::SUBTITLE.to_owned(),
+        sections: sections.collect(),
+    }
+}

@@ -3,6 +3,7 @@
 
 use crate::calibrate;
 use crate::diagnose::Severity;
+use crate::text::digits;
 
 use super::SectionId;
 
@@ -147,4 +148,102 @@ pub struct Cell {
     pub value: Option<f64>,
     /// Whether it stands out.
     pub is_strong: bool,
+}
+
+impl Fact {
+    /// A name with its value.
+    #[must_use]
+    pub fn new(name: impl Into<String>, value: impl Into<String>) -> Self {
+        Self { name: name.into(), value: value.into() }
+    }
+}
+
+impl Column {
+    /// A column of words.
+    #[must_use]
+    pub fn words(title: impl Into<String>, csv_name: impl Into<String>) -> Self {
+        Self { title: title.into(), group: None, unit: None, csv_name: csv_name.into(), is_number: false }
+    }
+
+    /// A column of figures.
+    #[must_use]
+    pub fn number(title: impl Into<String>, unit: Option<&'static str>, csv_name: impl Into<String>) -> Self {
+        Self { title: title.into(), group: None, unit, csv_name: csv_name.into(), is_number: true }
+    }
+
+    /// Three columns x, y, z in mm under one heading; `csv_name` is what stands before the axis.
+    #[must_use]
+    pub fn vector_mm(group: &str, titles: [&str; 3], csv_name: &str) -> [Self; 3] {
+        [0, 1, 2].map(|axis| {
+            let csv_name = format!("{csv_name}_{}_mm", ["x", "y", "z"][axis]);
+            Self { group: Some(group.to_owned()), ..Self::number(titles[axis], None, csv_name) }
+        })
+    }
+
+    /// The same column under a heading that it shares with its neighbours.
+    #[must_use]
+    pub fn under(self, group: &str) -> Self {
+        Self { group: Some(group.to_owned()), ..self }
+    }
+}
+
+impl Cell {
+    /// Words.
+    #[must_use]
+    pub fn words(text: impl Into<String>) -> Self {
+        Self { text: text.into(), ..Self::default() }
+    }
+
+    /// A figure to so many decimals; a dash where it is not finite.
+    #[must_use]
+    pub fn number(value: f64, decimals: usize) -> Self {
+        if !value.is_finite() {
+            return Self::missing();
+        }
+        Self { text: typeset(&digits::fixed(value, decimals)), value: Some(value), is_strong: false }
+    }
+
+    /// A standard deviation or an error by itself: two digits of it, and no more than a tenth of a micrometre.
+    #[must_use]
+    pub fn size(value: f64) -> Self {
+        Self::number(value, digits::decimals_for(Some(value.abs())).min(4))
+    }
+
+    /// A difference: with its sign.
+    #[must_use]
+    pub fn signed(value: f64, decimals: usize) -> Self {
+        Self { text: typeset(&digits::signed(value, decimals)), ..Self::number(value, decimals) }
+    }
+
+    /// A whole number.
+    #[must_use]
+    pub fn count(count: usize) -> Self {
+        #[expect(clippy::cast_precision_loss, reason = "counts of stations and points")]
+        let value = count as f64;
+        Self { text: count.to_string(), value: Some(value), is_strong: false }
+    }
+
+    /// Nothing is known.
+    #[must_use]
+    pub fn missing() -> Self {
+        Self::words("–")
+    }
+
+    /// A figure where there is one.
+    #[must_use]
+    pub fn maybe(value: Option<f64>, decimals: usize) -> Self {
+        value.map_or_else(Self::missing, |value| Self::number(value, decimals))
+    }
+
+    /// The same, standing out.
+    #[must_use]
+    pub fn strong(self) -> Self {
+        Self { is_strong: true, ..self }
+    }
+}
+
+/// With the true minus sign, as wide as the plus.
+#[must_use]
+pub fn typeset(number: &str) -> String {
+    number.replace('-', "−")
 }

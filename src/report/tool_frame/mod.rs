@@ -36,11 +36,11 @@ pub struct ToolFrame {
 impl ToolFrame {
     /// What a solution says, with what is known of its σ.
     #[must_use]
-    pub fn of_solution(solution: &Solution, mount: Mount, name: Name, number: u8) -> Self {
+    pub fn of_solution(solution: &Solution, name: Name, number: u8) -> Self {
         let known = solution.uncertainty.as_ref();
         Self {
             flange_from_sensor: solution.flange_from_sensor,
-            parent: Parent::of(mount),
+            parent: Parent::of(solution.mount),
             name,
             number,
             std_mm_deg: known.map(|known| [known.translation_std_mm, known.rotation_std_rad.map(f64::to_degrees)]),
@@ -194,6 +194,13 @@ impl Format {
     #[must_use]
     pub fn suits(&self, parent: Parent) -> bool {
         parent == Parent::Flange || !self.needs_flange
+    }
+
+    /// Whether it is for the controller, or the pendant, of the robots whose angles are written so.
+    #[must_use]
+    pub fn is_for_robots_of(&self, convention: &PoseConvention) -> bool {
+        let maker = |id: &'static str| id.split('-').next();
+        self.id == convention.id || (self.group == Group::Controller && maker(self.id) == maker(convention.id))
     }
 
     /// The text, its convention in a comment where the format has comments.

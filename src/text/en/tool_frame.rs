@@ -78,3 +78,74 @@ pub fn no_rotation(file: &str, defect: f64) -> String {
          be given; `handeye verify --calibration` names the likely misprint"
     )
 }
+
+/// Name of a tool that nobody has named.
+pub const DEFAULT_NAME: &str = "scanner";
+/// Where there is nothing to write.
+pub const NO_CALIBRATION: &str =
+    "No method gave a calibration yet. Add stations, or see under Diagnosis what is wrong.";
+/// Heading of the list.
+pub const FORMATS: &str = "Written for";
+/// Hint in the field above the list.
+pub const FILTER: &str = "Find a controller or format";
+/// Where the list is empty.
+pub const NONE_FOUND: &str = "No format of this name.";
+/// Why the list has no controllers.
+pub const NO_TOOL: &str = "The sensor stands beside the robot, so its frame is no tool of a controller.";
+/// Heading of a group.
+pub const OWN_ROBOT: &str = "Robot of this session";
+/// Heading of a group.
+pub const CONTROLLERS: &str = "Robot controllers";
+/// Heading of a group.
+pub const ROS: &str = "ROS";
+/// Heading of a group.
+pub const PROGRAMS: &str = "Programs: matrices and quaternions";
+/// Heading of a group.
+pub const PENDANTS: &str = "Six numbers to type on a pendant";
+/// Button.
+pub const COPY: &str = "Copy";
+/// Button.
+pub const SAVE: &str = "Save…";
+/// Heading of the question for the file.
+pub const SAVE_TITLE: &str = "File for the tool frame";
+/// Name of the field with the text.
+pub const TEXT: &str = "Text of the tool frame";
+/// Label of a field.
+pub const CALIBRATION: &str = "Calibration";
+/// Label of a field.
+pub const NAME: &str = "Name of the tool";
+/// Label of a field.
+pub const NUMBER: &str = "Number";
+
+/// How well the calibration is known.
+#[must_use]
+pub fn known_to(std_mm: Option<&str>) -> String {
+    match std_mm {
+        Some(std_mm) => format!("± {std_mm} mm at the workspace point (1 σ)"),
+        None => "uncertainty not known".to_owned(),
+    }
+}
+
+/// What the numbers mean.
+#[must_use]
+pub fn meaning(is_carried: bool, units: &str, formula: Option<&str>) -> String {
+    let frame = if is_carried { "the flange" } else { "the robot's base" };
+    match formula {
+        Some(formula) => format!("The sensor's frame in {frame}. Units: {units}. R = {formula}."),
+        None => format!("The sensor's frame in {frame}. Units: {units}."),
+    }
+}
+
+/// The text was read back.
+#[must_use]
+pub fn read_back(translation_mm: &str, rotation_deg: &str) -> String {
+    format!("Read back from this text: equal within {translation_mm} mm and {rotation_deg}°, its rounding.")
+}
+
+/// The text was read back, and is another pose.
+#[must_use]
+pub fn read_back_wrong(translation_mm: &str, rotation_deg: &str) -> String {
+    format!(
+        "Read back from this text it is another pose, off by {translation_mm} mm and {rotation_deg}°. Do not use it."
+    )
+}

@@ -13,6 +13,7 @@ use crate::session::Target;
 use crate::text::arcs as text;
 use crate::text::edges::feature_name;
 use crate::text::typeset::std_text;
+use crate::ui::save_picture::saveable;
 use crate::ui::{PanelContext, Selection, theme, widgets};
 
 use super::list::Columns;
@@ -318,7 +319,9 @@ fn profile_card(
     };
     let is_fitted = &mut state.is_profile_fitted;
     widgets::card_with_height(ui, title, height, right, |ui| match view {
-        Some(CaptureView::Profile(model)) => profile::show(ui, model, shows_whole, is_fitted),
+        Some(CaptureView::Profile(model)) => {
+            saveable(ui, title, |ui| profile::show(ui, model, shows_whole, is_fitted));
+        }
         Some(CaptureView::Point([x, y, z])) => {
             let [x, y, z] = [x, y, z].map(|value| widgets::fixed(*value, 3));
             empty_card(ui, text::point_reading(target), Some(&text::point_coordinates(target, &x, &y, &z)));
@@ -381,7 +384,9 @@ fn curve_card(
                 hovered_capture: hovered_in_list,
                 has_residuals: true,
             };
-            let response = curve::show(ui, &Curve::of(sweep), &look, &mut state.is_curve_fitted);
+            let is_fitted = &mut state.is_curve_fitted;
+            let response =
+                saveable(ui, text::RADIUS_AGAINST_STEP, |ui| curve::show(ui, &Curve::of(sweep), &look, is_fitted));
             state.hovered_capture = response.hovered.or(hovered_in_list);
             if let Some(capture_idx) = response.clicked {
                 selection.capture_idx = capture_idx;

@@ -6,6 +6,7 @@ use egui_plot::MarkerShape;
 use crate::session::ScanLine;
 use crate::text::arcs as text;
 use crate::ui::charts::{self, Canvas, Chart, Extent, LegendEntry, LegendGlyph};
+use crate::ui::save_picture::saveable;
 use crate::ui::{Selection, theme, widgets};
 
 use super::model::StationRow;
@@ -22,7 +23,7 @@ pub fn card(ui: &mut Ui, height: f32, station: &StationRow, selection: &mut Sele
     };
     widgets::card_with_height(ui, text::RANGES, height, right, |ui| {
         if lines.iter().flatten().any(|line| line.range_mm.is_some()) {
-            plot(ui, &lines, selection, is_fitted);
+            saveable(ui, text::RANGES, |ui| plot(ui, &lines, selection, is_fitted));
         } else {
             empty_card(ui, text::NO_RANGES, None);
         }

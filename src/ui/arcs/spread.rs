@@ -9,6 +9,7 @@ use crate::session::Target;
 use crate::text::arcs as text;
 use crate::text::edges::edge_name;
 use crate::ui::charts::{self, Chart, Extent, LegendEntry, LegendGlyph};
+use crate::ui::save_picture::saveable;
 use crate::ui::{Selection, theme, widgets};
 
 use super::model::{self, SpreadPoint, StationRow};
@@ -34,7 +35,7 @@ pub fn card(
         if points.is_empty() {
             empty_card(ui, text::NO_POINTS, None);
         } else {
-            plot(ui, target, &points, selection, is_fitted);
+            saveable(ui, text::IN_LASER_PLANE, |ui| plot(ui, target, &points, selection, is_fitted));
         }
     });
 }

@@ -17,6 +17,7 @@ use crate::text::typeset::with_std;
 use crate::ui::arcs::curve::{self, CurveLook};
 use crate::ui::arcs::profile;
 use crate::ui::charts::Extent;
+use crate::ui::save_picture::saveable;
 use crate::ui::theme;
 use crate::ui::widgets::{card_with_height, fixed, nothing};
 
@@ -80,7 +81,8 @@ fn live_card(ui: &mut Ui, height: f32, desk: &mut Desk<'_>) {
         let steady = steady(desk.state.view, [extent.x, extent.y]);
         desk.state.view = Some(steady);
         let extent = Extent { x: steady[0], y: steady[1] };
-        profile::show_alone(ui, "live profile", &model, extent, &mut desk.state.is_profile_fitted);
+        let is_fitted = &mut desk.state.is_profile_fitted;
+        saveable(ui, words::LIVE, |ui| profile::show_alone(ui, "live profile", &model, extent, is_fitted));
     });
     if fits {
         desk.state.is_profile_fitted = true;
@@ -180,7 +182,8 @@ fn curve_card(ui: &mut Ui, height: f32, desk: &mut Desk<'_>) {
                 has_residuals: false,
             };
             let curve = Curve { points: &shown.points, peak: shown.peak, published_stop_mm: shown.published_stop_mm };
-            curve::show(ui, &curve, &look, &mut desk.state.is_curve_fitted);
+            let is_fitted = &mut desk.state.is_curve_fitted;
+            saveable(ui, words::RADIUS_AGAINST_STEP, |ui| curve::show(ui, &curve, &look, is_fitted));
         },
     );
 }

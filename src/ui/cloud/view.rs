@@ -1,15 +1,17 @@
 //! The view itself: the pointer and keys turn, move and zoom it; a click or a drawn rectangle chooses points.
 
+use std::sync::Arc;
+
 use egui::{
-    Align2, Color32, CursorIcon, FontId, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind,
-    TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
+    Align2, Color32, ColorImage, CursorIcon, FontId, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke,
+    StrokeKind, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 use nalgebra::Vector3;
 
 use crate::geometry::Vec3;
 use crate::scan::Cloud;
 use crate::text::workpiece as words;
-use crate::ui::{theme, widgets};
+use crate::ui::{save_picture, theme, widgets};
 
 use super::{AT_REST, Camera, Canvas, IN_MOTION, Thinned, draw, marks};
 
@@ -77,7 +79,7 @@ pub struct CloudView {
     /// The cloud that the camera was fitted to, and what is kept of it.
     seen: Option<Seen>,
     canvas: Canvas,
-    picture: Option<(PictureKey, TextureHandle)>,
+    picture: Option<(PictureKey, TextureHandle, Arc<ColorImage>)>,
     drag_from: Option<Pos2>,
 }
 
@@ -132,24 +134,27 @@ impl CloudView {
             is_fine: !is_moving,
         };
         let num_shown = if is_moving { seen.in_motion.points.len() } else { seen.fine(scene).points.len() };
-        if self.picture.as_ref().is_none_or(|(known, _)| *known != key) {
+        if self.picture.as_ref().is_none_or(|(known, ..)| *known != key) {
             let thinned = if is_moving { &seen.in_motion } else { seen.fine(scene) };
             #[expect(clippy::cast_precision_loss, reason = "the width of a picture")]
             let pixels_per_point = key.size[0] as f32 / rect.width().max(1.0);
-            let image = draw(thinned, &self.camera, key.size, pixels_per_point, &mut self.canvas);
-            if let Some((known, texture)) = &mut self.picture {
-                *known = key;
-                texture.set(image, TextureOptions::LINEAR);
-            } else {
-                let texture = ui.ctx().load_texture("cloud", image, TextureOptions::LINEAR);
-                self.picture = Some((key, texture));
-            }
+            let image = Arc::new(draw(thinned, &self.camera, key.size, pixels_per_point, &mut self.canvas));
+            let shown = Arc::clone(&image);
+            let texture = match self.picture.take() {
+                Some((_, mut texture, _)) => {
+                    texture.set(shown, TextureOptions::LINEAR);
+                    texture
+                }
+                None => ui.ctx().load_texture("cloud", shown, TextureOptions::LINEAR),
+            };
+            self.picture = Some((key, texture, image));
         }
         if is_moving {
             // Once more when it stands still, with all that the screen can show.
             ui.ctx().request_repaint();
         }
-        if let Some((_, texture)) = &self.picture {
+        if let Some((_, texture, image)) = &self.picture {
+            save_picture::keep_image(ui.ctx(), texture.id(), || Arc::clone(image));
             let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
             painter.image(texture.id(), rect, uv, Color32::WHITE);
         }

@@ -11,6 +11,7 @@ use crate::report::judgement::Judgement;
 use crate::session::Target;
 use crate::text::compare as text;
 use crate::text::methods::{method_description, method_short_name};
+use crate::ui::save_picture::saveable;
 use crate::ui::verdict::{self, NextStep};
 use crate::ui::{PanelContext, theme, widgets};
 
@@ -258,8 +259,9 @@ fn bars_card(ui: &mut Ui, target: &Target, tables: &[(Method, &MethodTable)], he
             state.bar_source = BarSource::LeftOut;
         }
     };
-    widgets::card_with_height(ui, text::error_per_station(target), height, right, |ui| {
-        bars::show(ui, tables, source, reference);
+    let title = text::error_per_station(target);
+    widgets::card_with_height(ui, title, height, right, |ui| {
+        saveable(ui, title, |ui| bars::show(ui, tables, source, reference));
     });
 }
 
@@ -267,5 +269,8 @@ fn scatter_card(ui: &mut Ui, target: &Target, tables: &[(Method, &MethodTable)],
     let right = |ui: &mut Ui| {
         ui.label(theme::dim(ui, text::scatter_hint(target)));
     };
-    widgets::card_with_height(ui, text::scatter_title(target), height, right, |ui| scatter::show(ui, tables, view));
+    let title = text::scatter_title(target);
+    widgets::card_with_height(ui, title, height, right, |ui| {
+        saveable(ui, title, |ui| scatter::show(ui, tables, view));
+    });
 }

@@ -11,6 +11,7 @@ use crate::geometry::Mat3;
 use crate::text::diagnosis as fault_words;
 use crate::text::diagnosis_panel as words;
 use crate::text::typeset::{all_digits, std_text};
+use crate::ui::save_picture::saveable;
 use crate::ui::widgets::{fixed, number_text, split_row, value_row};
 use crate::ui::{charts, theme, widgets};
 
@@ -57,7 +58,7 @@ fn contents(ui: &mut Ui, view: &View<'_>, solution: &Solution, uncertainty: &Unc
     Frame::new().inner_margin(Margin { left: 12, right: 12, top: 8, bottom: 4 }).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         let height = ui.available_height() - FIGURE_ROWS * theme::ROW_HEIGHT;
-        ellipses(ui, height, uncertainty);
+        saveable(ui, words::ACCURACY, |ui| ellipses(ui, height, uncertainty));
         figures(ui, view, solution, uncertainty);
     });
 }

@@ -10,6 +10,7 @@ use crate::text::diagnosis as fault_words;
 use crate::text::diagnosis_panel as words;
 use crate::text::typeset::{std_text, with_std};
 use crate::ui::charts::{self, Chart, Extent, LegendEntry, LegendGlyph};
+use crate::ui::save_picture::saveable;
 use crate::ui::{PanelContext, Selection, theme, widgets};
 
 use super::bars::{self, Bar};
@@ -40,11 +41,14 @@ pub fn evidence(ui: &mut Ui, height: f32, view: &View<'_>, context: &mut PanelCo
         }
     };
     widgets::card_with_height(ui, &title, height, right, |ui| {
-        if let Some(plot) = &plot {
-            show(ui, plot, view, context, is_fitted);
-        } else {
-            let has_solution = view.solution().is_some();
-            widgets::nothing(ui, if has_solution { words::TOO_FEW_TO_LEAVE_OUT } else { words::NO_SOLUTION });
+        match &plot {
+            // A table, not a picture.
+            Some(Plot::Readings(fits)) => readings::show(ui, fits, view.diagnosis.is_current, context),
+            Some(plot) => saveable(ui, &title, |ui| show(ui, plot, view, context, is_fitted)),
+            None => {
+                let has_solution = view.solution().is_some();
+                widgets::nothing(ui, if has_solution { words::TOO_FEW_TO_LEAVE_OUT } else { words::NO_SOLUTION });
+            }
         }
     });
 }

@@ -7,6 +7,7 @@ use crate::calibrate::validation::{SplitHalf, Validation};
 use crate::text::diagnosis_panel as words;
 use crate::text::typeset::std_text;
 use crate::ui::charts::{self, Chart, Extent, LegendEntry, LegendGlyph};
+use crate::ui::save_picture::saveable;
 use crate::ui::{Selection, theme, widgets};
 
 use super::bars::{self, Bar};
@@ -84,7 +85,7 @@ pub fn influence(ui: &mut Ui, height: f32, view: &View<'_>, selection: &mut Sele
         };
         let y_title = if shows_moves { words::MOVES_AXIS } else { words::STUDENTISED_AXIS };
         let frame = bars::Frame { id: Id::unique("diagnosis influence"), y_title, lines };
-        bars::show(ui, &frame, &bars, selection, is_fitted);
+        saveable(ui, words::INFLUENCE, |ui| bars::show(ui, &frame, &bars, selection, is_fitted));
     });
     if let Some(moves) = chosen {
         state.shows_moves = moves;
@@ -99,7 +100,7 @@ pub fn halves(ui: &mut Ui, height: f32, view: &View<'_>, is_fitted: &mut bool) {
     };
     widgets::card_with_height(ui, words::HALVES, height, title_hint, |ui| {
         match validation(view).and_then(|validation| validation.split_half.as_ref()) {
-            Some(split) => splits(ui, split, is_fitted),
+            Some(split) => saveable(ui, words::HALVES, |ui| splits(ui, split, is_fitted)),
             None => missing(ui, view, words::TOO_FEW_FOR_HALVES),
         }
     });
@@ -150,7 +151,9 @@ pub fn normality(ui: &mut Ui, height: f32, view: &View<'_>, is_fitted: &mut bool
         ui.label(theme::dim(ui, words)).on_hover_text(words::NORMALITY_HINT);
     };
     widgets::card_with_height(ui, words::NORMALITY, height, right, |ui| match normality {
-        Some(normality) => quantiles(ui, &normality.quantiles, is_fitted),
+        Some(normality) => {
+            saveable(ui, words::NORMALITY, |ui| quantiles(ui, &normality.quantiles, is_fitted));
+        }
         None => missing(ui, view, words::TOO_FEW_RESIDUALS),
     });
 }

@@ -9,6 +9,7 @@ use crate::app::Command;
 use crate::app::workbench::scans::ScanCommand;
 use crate::ui::file_dialog::Purpose;
 use crate::ui::rail::Step;
+use crate::ui::save_file::SaveFile;
 
 use super::Shell;
 
@@ -26,6 +27,14 @@ impl Shell {
         self.file_dialog.start(purpose, suggested_name, Arc::clone(&self.wake));
     }
 
+    /// Asks for the place of a file that a panel has made.
+    pub(super) fn ask_where_to_save(&mut self, file: SaveFile) {
+        if !self.file_dialog.is_open() {
+            self.file_dialog.start(file.purpose, file.name.clone(), Arc::clone(&self.wake));
+            self.to_write = Some(file);
+        }
+    }
+
     pub(super) fn take_paths(&mut self, purpose: Purpose, paths: Vec<PathBuf>) {
         match purpose {
             Purpose::Open => self.request(Command::to_read(paths)),
@@ -37,6 +46,12 @@ impl Shell {
             Purpose::ExportPoints => self.apply_to_each(paths, |path| scan(ScanCommand::Export(path))),
             Purpose::OpenPoints => self.apply_to_each(paths, |path| scan(ScanCommand::OpenPoints(path))),
             Purpose::Calibration => self.apply_to_each(paths, |path| scan(ScanCommand::UseCalibration(path))),
+            Purpose::ToolFrame | Purpose::Picture => {
+                if let Some(file) = self.to_write.take() {
+                    let write = |path| Command::WriteFile { path, contents: Arc::clone(&file.contents) };
+                    self.apply_to_each(paths, write);
+                }
+            }
             Purpose::WatchedFolder => {
                 if let Some(folder) = paths.into_iter().next() {
                     self.persisted.cell.watch(folder);
@@ -57,6 +72,7 @@ impl Shell {
         let path = match purpose {
             Purpose::ExportPoses => folder.join(self.suggested_csv()),
             Purpose::ExportPoints => folder.join(self.suggested_ply()),
+            Purpose::ToolFrame | Purpose::Picture => folder.join(self.to_write.as_ref().map_or("", |file| &file.name)),
             _ => folder,
         };
         path.display().to_string()

@@ -11,8 +11,9 @@ use std::time::{Duration, Instant};
 use egui::{CentralPanel, Context, Frame, Margin, Panel, Stroke, Ui, ViewportCommand};
 
 use crate::app::cell::CellCommand;
-use crate::app::jobs::Wake;
-use crate::app::{Command, OnDisk, Workbench};
+use crate::app::jobs::{JobOutcome, Slot, Wake};
+use crate::app::{Command, NoticeKind, OnDisk, Workbench};
+use crate::text::report_panel as report_words;
 use crate::text::shell as words;
 
 use self::live_cell::CellWatch;
@@ -28,11 +29,14 @@ use super::import::{self, ImportState};
 use super::persisted::Persisted;
 use super::poses::panel::PosesState;
 use super::rail::{self, Step};
+use super::report::ReportState;
+use super::save_file::{self, SaveFile};
+use super::save_picture::{self, Drawn};
 use super::start::panel::StartState;
 use super::verify::VerifyState;
 use super::{
-    PanelContext, Selection, arcs, capture, compare, diagnosis, inspector, poses, start, status, theme, top_bar,
-    verify, widgets,
+    PanelContext, Selection, arcs, capture, compare, diagnosis, inspector, poses, report, start, status, theme,
+    top_bar, verify, widgets,
 };
 
 /// Height of the bar at the top, points.
@@ -81,12 +85,17 @@ pub struct Shell {
     compare: CompareState,
     diagnosis: DiagnosisState,
     verify: VerifyState,
+    report: ReportState,
     import: ImportState,
     /// Frames until a clipboard that was asked for its text counts as empty.
     paste_patience: Option<u8>,
     persisted: Persisted,
     file_dialog: FileDialog,
     save_path: Option<SavePath>,
+    /// A picture that is being drawn.
+    drawing: Slot<Drawn>,
+    /// What waits for its path.
+    to_write: Option<SaveFile>,
     is_help_open: bool,
     history: HistoryWindow,
     /// The state of the file on disk whose strip was dismissed.
@@ -138,11 +147,14 @@ impl Shell {
             compare: CompareState::default(),
             diagnosis: DiagnosisState::default(),
             verify: VerifyState::default(),
+            report: ReportState::default(),
             import: ImportState::default(),
             paste_patience: None,
             persisted,
             file_dialog: FileDialog::default(),
             save_path: None,
+            drawing: Slot::default(),
+            to_write: None,
             is_help_open: false,
             history: HistoryWindow::default(),
             dismissed_on_disk: None,
@@ -190,7 +202,10 @@ impl Shell {
     /// Whether something is being read or solved in the background.
     #[must_use]
     pub const fn is_busy(&self) -> bool {
-        self.workbench.is_busy() || self.start.is_reading() || self.paste_patience.is_some()
+        self.workbench.is_busy()
+            || self.start.is_reading()
+            || self.paste_patience.is_some()
+            || self.drawing.is_running()
     }
 
     /// Takes in finished jobs; also while the window is hidden.
@@ -203,6 +218,7 @@ impl Shell {
         self.notice_new_document(ctx);
         self.notice_new_results();
         self.take_dialog_answer();
+        self.take_drawn(ctx);
         self.go_on_after_saving(ctx);
         self.guard_closing(ctx);
         self.dismiss_done_notice(ctx);
@@ -220,6 +236,7 @@ impl Shell {
         }
         // What is typed while a question waits is its answer, and nothing for what lies below.
         let is_asking = self.is_asking();
+        save_picture::begin_frame(&ctx);
         let mut actions = if is_asking { Vec::new() } else { actions::pressed(&ctx, &self.workbench) };
         let mut commands = Vec::new();
         if actions.iter().any(|action| action.takes_what_is_typed()) {
@@ -258,6 +275,12 @@ impl Shell {
         for command in commands {
             self.request(command);
         }
+        if let Some((picture, wanted)) = save_picture::take(&ctx) {
+            self.drawing.start("draw picture", &self.wake, move |_| save_picture::draw(&picture, wanted));
+        }
+        if let Some(file) = save_file::take(&ctx) {
+            self.ask_where_to_save(file);
+        }
         if std::mem::take(&mut self.is_closing_again) {
             ctx.send_viewport_cmd(ViewportCommand::Close);
         }
@@ -286,8 +309,8 @@ impl Shell {
             let num_pose_remarks = self.poses.num_remarks(&self.workbench, self.selection.method);
             rail::show(ui, &self.workbench, &self.selection, num_pose_remarks, self.step, actions);
         });
-        // The live cell needs the room, and shows what there is to inspect itself.
-        let has_inspector = self.persisted.inspector_open && self.step != Step::Capture;
+        // The live cell and the report need the room, and show what there is to inspect themselves.
+        let has_inspector = self.persisted.inspector_open && !matches!(self.step, Step::Capture | Step::Report);
         if has_inspector && self.workbench.document().is_some() {
             let beside = surface.inner_margin(Margin { left: 16, right: 8, top: 0, bottom: 0 });
             Panel::right("inspector").resizable(false).exact_size(INSPECTOR_WIDTH).frame(beside).show(ui, |ui| {
@@ -319,8 +342,26 @@ impl Shell {
                 Step::Compare => compare::show(ui, &mut context, &mut self.compare),
                 Step::Diagnosis => diagnosis::show(ui, &mut context, &mut self.diagnosis),
                 Step::Verify => verify::show(ui, &mut context, &mut self.verify),
+                Step::Report => report::show(ui, &mut context, &mut self.report),
             }
         });
+    }
+
+    /// A picture has been drawn: it goes to the clipboard, or to a file.
+    fn take_drawn(&mut self, ctx: &Context) {
+        match self.drawing.poll() {
+            Some(JobOutcome::Done(Drawn::File(file))) => self.ask_where_to_save(file),
+            Some(JobOutcome::Done(Drawn::Image(image))) => {
+                ctx.copy_image(image);
+                let copied = report_words::COPIED_PICTURE.to_owned();
+                self.workbench.apply(Command::Tell(NoticeKind::Done, copied));
+            }
+            Some(JobOutcome::Panicked | JobOutcome::NotStarted(_)) => {
+                let failed = report_words::NO_PICTURE.to_owned();
+                self.workbench.apply(Command::Tell(NoticeKind::Error, failed));
+            }
+            None => {}
+        }
     }
 
     fn read_dropped_files(ctx: &Context, commands: &mut Vec<Command>) {

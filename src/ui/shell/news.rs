@@ -14,6 +14,7 @@ use crate::ui::arcs::ArcsState;
 use crate::ui::compare::CompareState;
 use crate::ui::diagnosis::DiagnosisState;
 use crate::ui::poses::panel::PosesState;
+use crate::ui::report::ReportState;
 
 use super::Shell;
 
@@ -35,6 +36,7 @@ impl Shell {
             self.arcs = ArcsState::default();
             self.compare = CompareState::default();
             self.diagnosis = DiagnosisState::default();
+            self.report = ReportState::default();
             self.start.forget_typing();
             self.seen_results = 0;
         }

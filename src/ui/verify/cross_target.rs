@@ -8,12 +8,13 @@ use crate::text::verify as words;
 use crate::ui::actions::Action;
 use crate::ui::charts::{Chart, Extent};
 use crate::ui::compare::table::{RowCells, tint, tint_legend};
+use crate::ui::save_picture::saveable;
 use crate::ui::{PanelContext, theme, widgets};
 use crate::verify::{StationError, TargetEvidence};
 
 use super::distances::{nothing_yet, select_cell};
 use super::marks::Mark;
-use super::panel::{View, name_field};
+use super::panel::View;
 
 /// Width of the column of calibrations, points.
 const NAME_WIDTH: f32 = 260.0;
@@ -213,7 +214,7 @@ fn figures(cells: &mut RowCells<'_>, width: f32, figures: &crate::verify::Figure
 /// The errors of every station of the target in sight, all calibrations beside each other.
 fn stations(ui: &mut Ui, view: &View<'_>, shown_idx: usize, state: &mut CrossTargetState) {
     let target = &view.verification.targets[state.target];
-    let seen: Vec<(&Mark, &[StationError], bool)> = target
+    let seen: Vec<SeenStations<'_>> = target
         .rows
         .iter()
         .zip(&view.marks)
@@ -233,62 +234,63 @@ fn stations(ui: &mut Ui, view: &View<'_>, shown_idx: usize, state: &mut CrossTar
         |_| {},
         |ui| {
             let marks: Vec<&Mark> = seen.iter().map(|(mark, ..)| *mark).collect();
-            state.is_fitted |= super::histogram::choosing_legend(ui, &marks, &mut state.hidden);
-            let seen: Vec<_> = seen.into_iter().filter(|(mark, ..)| !state.hidden.contains(&mark.name)).collect();
-            if seen.is_empty() {
-                widgets::nothing(ui, words::ALL_HIDDEN);
-                return;
-            }
-            ui.add_space(6.0);
-            let place = |idx: usize| f64::from(u32::try_from(idx).unwrap_or(u32::MAX));
-            let mut extent = Extent { x: [-0.6, place(names.len()) - 0.4], y: [0.0, 0.01] };
-            for station in seen.iter().flat_map(|(_, stations, _)| stations.iter()) {
-                extent.include(0.0, station.error_mm);
-            }
-            let mut chart = Chart::new(
-                Id::unique("cross target"),
-                words::STATION_AXIS,
-                words::ERROR_AXIS,
-                ui.available_height(),
-                extent,
-            );
-            chart.x_names = Some(&names);
-            let canvas = chart.show(ui, &mut state.is_fitted);
-            let baseline = canvas.at(0.0, 0.0).y;
-            let bar_width = BARS_PART / place(seen.len().max(1));
-            let mut hovered = None;
-            for (series, (mark, stations, is_shown)) in seen.iter().enumerate() {
-                for (idx, station) in stations.iter().enumerate() {
-                    let left = place(idx) - BARS_PART / 2.0 + place(series) * bar_width;
-                    let top = canvas.at(left, station.error_mm);
-                    let right = canvas.at(left + bar_width, 0.0).x;
-                    let bar = Rect::from_min_max(
-                        pos2(top.x, top.y.min(baseline - 1.5)),
-                        pos2((right - 0.5).max(top.x + 1.0), baseline),
-                    );
-                    mark.paint_bar(&canvas.painter, bar);
-                    if *is_shown {
-                        let stroke = Stroke::new(1.2, theme::palette(ui).text);
-                        canvas.painter.rect_stroke(bar, 0.0, stroke, egui::StrokeKind::Inside);
-                    }
-                    let column = Rect::from_x_y_ranges(bar.x_range(), canvas.rect().y_range());
-                    if canvas.response.hover_pos().is_some_and(|pointer| column.contains(pointer)) {
-                        hovered = Some((bar, &mark.name, station));
-                    }
+            saveable(ui, &title, |ui| {
+                state.is_fitted |= super::histogram::choosing_legend(ui, &marks, &mut state.hidden);
+                let seen: Vec<_> = seen.into_iter().filter(|(mark, ..)| !state.hidden.contains(&mark.name)).collect();
+                if seen.is_empty() {
+                    widgets::nothing(ui, words::ALL_HIDDEN);
+                    return;
                 }
-            }
-            let palette = theme::palette(ui);
-            canvas.painter.hline(
-                canvas.rect().x_range(),
-                baseline,
-                Stroke::new(1.0, palette.text_dim.gamma_multiply(0.6)),
-            );
-            if let Some((bar, name, station)) = hovered {
-                let note = words::station_readout(&station.label, name, &widgets::fixed(station.error_mm, 3));
-                canvas.note(ui, bar.center_top(), Align2::CENTER_BOTTOM, &note, palette.text);
-            }
+                station_bars(ui, &names, &seen, &mut state.is_fitted);
+            });
         },
     );
+}
+
+/// A calibration's errors at each station, and whether it is the one in sight.
+type SeenStations<'a> = (&'a Mark, &'a [StationError], bool);
+
+/// The bars of each station, a calibration each.
+fn station_bars(ui: &mut Ui, names: &[String], seen: &[SeenStations<'_>], is_fitted: &mut bool) {
+    ui.add_space(6.0);
+    let place = |idx: usize| f64::from(u32::try_from(idx).unwrap_or(u32::MAX));
+    let mut extent = Extent { x: [-0.6, place(names.len()) - 0.4], y: [0.0, 0.01] };
+    for station in seen.iter().flat_map(|(_, stations, _)| stations.iter()) {
+        extent.include(0.0, station.error_mm);
+    }
+    let mut chart =
+        Chart::new(Id::unique("cross target"), words::STATION_AXIS, words::ERROR_AXIS, ui.available_height(), extent);
+    chart.x_names = Some(names);
+    let canvas = chart.show(ui, is_fitted);
+    let baseline = canvas.at(0.0, 0.0).y;
+    let bar_width = BARS_PART / place(seen.len().max(1));
+    let mut hovered = None;
+    for (series, (mark, stations, is_shown)) in seen.iter().enumerate() {
+        for (idx, station) in stations.iter().enumerate() {
+            let left = place(idx) - BARS_PART / 2.0 + place(series) * bar_width;
+            let top = canvas.at(left, station.error_mm);
+            let right = canvas.at(left + bar_width, 0.0).x;
+            let bar = Rect::from_min_max(
+                pos2(top.x, top.y.min(baseline - 1.5)),
+                pos2((right - 0.5).max(top.x + 1.0), baseline),
+            );
+            mark.paint_bar(&canvas.painter, bar);
+            if *is_shown {
+                let stroke = Stroke::new(1.2, theme::palette(ui).text);
+                canvas.painter.rect_stroke(bar, 0.0, stroke, egui::StrokeKind::Inside);
+            }
+            let column = Rect::from_x_y_ranges(bar.x_range(), canvas.rect().y_range());
+            if canvas.response.hover_pos().is_some_and(|pointer| column.contains(pointer)) {
+                hovered = Some((bar, &mark.name, station));
+            }
+        }
+    }
+    let palette = theme::palette(ui);
+    canvas.painter.hline(canvas.rect().x_range(), baseline, Stroke::new(1.0, palette.text_dim.gamma_multiply(0.6)));
+    if let Some((bar, name, station)) = hovered {
+        let note = words::station_readout(&station.label, name, &widgets::fixed(station.error_mm, 3));
+        canvas.note(ui, bar.center_top(), Align2::CENTER_BOTTOM, &note, palette.text);
+    }
 }
 
 /// The further targets, to be renamed and removed.
@@ -313,7 +315,7 @@ fn further_list(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut CrossTa
                         ui.horizontal(|ui| {
                             let field =
                                 ui.add(TextEdit::singleline(&mut text).margin(vec2(8.0, 4.0)).desired_width(220.0));
-                            name_field(&field, &words::name_of(&further.name), &text);
+                            widgets::name_field(&field, &words::name_of(&further.name), &text);
                             if field.changed() {
                                 state.renaming = Some((further_idx, text.clone()));
                             }

@@ -5,6 +5,7 @@ use egui::{Align2, Color32, Rect, Role, Sense, Ui, UiBuilder, WidgetInfo, vec2};
 use crate::text::verify as words;
 use crate::ui::actions::Action;
 use crate::ui::compare::table::RowCells;
+use crate::ui::save_picture::saveable;
 use crate::ui::{PanelContext, theme, widgets};
 use crate::verify::{Distances, EdgePoint, Figures};
 
@@ -240,15 +241,17 @@ fn histograms(ui: &mut Ui, rows: &[Row<'_>], height: f32, state: &mut DistancesS
             |_| {},
             |ui| {
                 let marks: Vec<&Mark> = seen.iter().map(|(mark, _)| *mark).collect();
-                is_changed |= ui.push_id(title, |ui| histogram::choosing_legend(ui, &marks, hidden)).inner;
-                let series: Vec<Series<'_>> = (seen.iter().filter(|(mark, _)| !hidden.contains(&mark.name)))
-                    .map(|(mark, found)| Series { mark, distances_mm: found.points.iter().map(distance).collect() })
-                    .collect();
-                if series.is_empty() {
-                    widgets::nothing(ui, words::ALL_HIDDEN);
-                } else {
-                    histogram::show(ui, title, axis, &series, is_fitted);
-                }
+                saveable(ui, title, |ui| {
+                    is_changed |= ui.push_id(title, |ui| histogram::choosing_legend(ui, &marks, hidden)).inner;
+                    let series: Vec<Series<'_>> = (seen.iter().filter(|(mark, _)| !hidden.contains(&mark.name)))
+                        .map(|(mark, found)| Series { mark, distances_mm: found.points.iter().map(distance).collect() })
+                        .collect();
+                    if series.is_empty() {
+                        widgets::nothing(ui, words::ALL_HIDDEN);
+                    } else {
+                        histogram::show(ui, title, axis, &series, is_fitted);
+                    }
+                });
             },
         );
     }
@@ -261,5 +264,7 @@ fn picture(ui: &mut Ui, height: f32, mark: &Mark, distances: &Distances, camera:
     let right = |ui: &mut Ui| {
         ui.label(theme::dim(ui, &mark.name));
     };
-    widgets::card_with_height(ui, words::IN_SPACE, height, right, |ui| space::show(ui, distances, mark, camera));
+    widgets::card_with_height(ui, words::IN_SPACE, height, right, |ui| {
+        saveable(ui, words::IN_SPACE, |ui| space::show(ui, distances, mark, camera));
+    });
 }

@@ -11,7 +11,7 @@ use crate::ui::compare::table::RowCells;
 use crate::ui::{PanelContext, theme, widgets};
 use crate::verify::{Calibration, GivenMatrix, MatrixCheck, MatrixDifference, MatrixRefusal, Origin, parse_matrix};
 
-use super::panel::{View, name_field};
+use super::panel::View;
 
 /// Room between the two matrices, points.
 const BETWEEN: f32 = 24.0;
@@ -155,7 +155,7 @@ fn entry(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut MatricesState)
         .desired_rows(FIELD_ROWS)
         .desired_width(f32::INFINITY);
     let field = ui.add(field);
-    name_field(&field, words::PASTED_FIELD, &state.pasted);
+    widgets::name_field(&field, words::PASTED_FIELD, &state.pasted);
     if field.changed() {
         let is_empty = state.pasted.trim().is_empty();
         state.read = (!is_empty).then(|| {
@@ -174,7 +174,7 @@ fn entry(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut MatricesState)
             .margin(vec2(8.0, 5.0))
             .desired_width(140.0);
         let field = ui.add(name);
-        name_field(&field, words::GIVEN_NAME_FIELD, &state.name);
+        widgets::name_field(&field, words::GIVEN_NAME_FIELD, &state.name);
         let button = ui.add_enabled(nearest.is_some(), Button::new(words::GIVE));
         let button = button.on_hover_text(words::GIVE_HINT).on_disabled_hover_text(words::GIVE_MISSING);
         if let Some(flange_from_sensor) = nearest.filter(|_| button.clicked()) {

@@ -17,7 +17,7 @@ use crate::verify::{Measurement, Stability, TargetEvidence};
 use super::distances::nothing_yet;
 use super::marks::Mark;
 use super::matrices::{self, MatricesState};
-use super::panel::{View, name_field};
+use super::panel::View;
 
 /// Width of the column of labels, points.
 const LABEL_WIDTH: f32 = 112.0;
@@ -156,7 +156,7 @@ fn touched_fields(ui: &mut Ui, target: &TargetEvidence, context: &mut PanelConte
             .margin(vec2(8.0, 5.0))
             .desired_width(FIELD_WIDTH);
         let field = ui.add(edit);
-        name_field(&field, &words::touched_axis(axis), text);
+        widgets::name_field(&field, &words::touched_axis(axis), text);
     }
     ui.label(theme::dim(ui, "mm"));
     let mut edit = |point_in_base_mm: Option<Vec3>| {

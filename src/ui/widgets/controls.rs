@@ -20,6 +20,15 @@ pub fn symbol_button(ui: &mut Ui, symbol: &str, name: &str) -> Response {
     response
 }
 
+/// Names a text field for screen readers.
+pub fn name_field(field: &Response, name: &str, text: &str) {
+    field.widget_info(|| {
+        let mut info = WidgetInfo::text_edit(true, "", text, "");
+        info.label = Some(name.to_owned());
+        info
+    });
+}
+
 /// The button of the next action, in the accent colour. At most one is in sight.
 pub fn primary_button(ui: &mut Ui, text: &str) -> Response {
     let palette = theme::palette(ui);

@@ -8,6 +8,7 @@ use crate::report::figure::Orbit;
 use crate::session::edit::shown_numbers;
 use crate::session::{Edit, Session};
 use crate::text::conventions as words;
+use crate::ui::save_picture::saveable;
 use crate::ui::widgets::{card_with_height, chip, number_text, primary_button};
 use crate::ui::{PanelContext, theme};
 
@@ -104,8 +105,10 @@ fn picture(ui: &mut Ui, session: &Session, camera: &mut Orbit) {
                     ui.label(theme::dim(ui, words::ORBIT_HINT).size(theme::SMALL_SIZE));
                 },
                 |ui| {
-                    let area = ui.available_rect_before_wrap();
-                    paint::show(ui, area, words::PICTURE_TITLE, &model::frames(session), camera);
+                    saveable(ui, words::PICTURE_TITLE, |ui| {
+                        let area = ui.available_rect_before_wrap();
+                        paint::show(ui, area, words::PICTURE_TITLE, &model::frames(session), camera);
+                    });
                 },
             );
         });

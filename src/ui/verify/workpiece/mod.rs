@@ -17,6 +17,7 @@ use crate::text::verify::calibration_name;
 use crate::text::workpiece::{self as words, ScanChoice};
 use crate::ui::actions::Action;
 use crate::ui::cloud::{CloudScene, CloudView, Tool};
+use crate::ui::save_picture::saveable;
 use crate::ui::{PanelContext, theme, widgets};
 use crate::verify::Origin;
 
@@ -269,7 +270,8 @@ fn picture(ui: &mut Ui, context: &mut PanelContext<'_>, scan: &ExaminedScan, hei
         galley.size().x <= room
     };
     // The name is in the list of scans as well.
-    let whole = words::picture_title(&scan.name, scan.cloud.len(), scan.num_profiles);
+    let picture_name = words::picture_title(&scan.name, scan.cloud.len(), scan.num_profiles);
+    let whole = picture_name.clone();
     let short = words::num_points(scan.cloud.len(), scan.num_profiles);
     let title = [whole, short].into_iter().find(|title| !is_narrow && fits(title)).unwrap_or_else(|| " ".to_owned());
     let answer = widgets::card_with_height(
@@ -323,7 +325,7 @@ fn picture(ui: &mut Ui, context: &mut PanelContext<'_>, scan: &ExaminedScan, hei
                 legend: Some(colors.legend(scan)),
                 tool: with.get(),
             };
-            view.show(ui, &scene)
+            saveable(ui, &picture_name, |ui| view.show(ui, &scene))
         },
     );
     *color_by = by.get();

@@ -9,9 +9,9 @@ use egui_extras::Column;
 use crate::app::workbench::scans::{ExaminedScan, ScanCommand};
 use crate::scan::PlaneFit;
 use crate::text::workpiece as words;
+use crate::ui::save_picture::saveable;
 use crate::ui::verify::histogram::{self, Series};
 use crate::ui::verify::marks::Mark;
-use crate::ui::verify::panel::name_field;
 use crate::ui::widgets::tables::{head, number_cell, number_head, table};
 use crate::ui::{PanelContext, theme, widgets};
 use crate::verify::Figures;
@@ -114,9 +114,11 @@ pub(super) fn show(
                 widgets::nothing(ui, words::NO_PLANES);
                 return;
             }
-            histogram::legend(ui, &marks.iter().map(|(_, mark)| mark).collect::<Vec<_>>());
             let mut is_fitted = !state.is_unfitted;
-            histogram::show(ui, "workpiece distances", words::DISTANCE_AXIS, &series, &mut is_fitted);
+            saveable(ui, &title, |ui| {
+                histogram::legend(ui, &marks.iter().map(|(_, mark)| mark).collect::<Vec<_>>());
+                histogram::show(ui, "workpiece distances", words::DISTANCE_AXIS, &series, &mut is_fitted);
+            });
             state.is_unfitted = !is_fitted;
         },
     );
@@ -213,7 +215,7 @@ fn name_cell(ui: &mut Ui, context: &mut PanelContext<'_>, name: &str, idx: usize
             .desired_width(30.0)
             .char_limit(40),
     );
-    name_field(&field, &words::region_name_field(name), &text);
+    widgets::name_field(&field, &words::region_name_field(name), &text);
     if field.changed() {
         ask(context, ScanCommand::RenameRegion(idx, text));
     }

@@ -1,0 +1,118 @@
+//! The methods side by side: their errors, their differences, and a table each in the layout of the paper's.
+
+use crate::calibrate::{MethodResult, Solution};
+use crate::report::compare::{distance_from_truth, maximum_error_mm};
+use crate::report::comparison::{Comparison, DifferenceRow};
+use crate::report::document::{Block, Cell, Column, Table};
+use crate::report::evidence::{Evidence, TargetEvidence};
+use crate::text::compare::pair;
+use crate::text::digits::decimals_for;
+use crate::text::report as words;
+use crate::text::{method_name, method_short_name};
+
+use super::{of_each_target, paper_table};
+
+/// Micrometres, as the papers print errors.
+const ERROR_DECIMALS: usize = 3;
+
+pub(in crate::report::document) fn blocks(evidence: &Evidence) -> Vec<Block> {
+    of_each_target(evidence, of_target)
+}
+
+fn of_target(target: &TargetEvidence, suffix: &str) -> Vec<Block> {
+    let comparison = Comparison::new(&target.session, target.results());
+    let mut blocks = vec![Block::Table(overview(target, suffix))];
+    let failed = target.results().iter().filter_map(|result| Some((result.method, result.outcome.as_ref().err()?)));
+    blocks.extend(failed.map(|(method, error)| Block::Paragraph(words::not_computed(method, &error.to_string()))));
+    if !comparison.differences.is_empty() {
+        blocks.push(Block::Table(differences(&comparison.differences, suffix)));
+    }
+    for column in &comparison.columns {
+        if let Ok(table) = &column.outcome {
+            blocks.push(Block::Table(paper_table::of_method(column.method, table, suffix)));
+        }
+    }
+    blocks.extend(comparison.published.as_ref().map(|published| Block::Table(paper_table::published(published))));
+    blocks
+}
+
+fn overview(target: &TargetEvidence, suffix: &str) -> Table {
+    let truth = target.session.truth.as_ref();
+    let mut columns = vec![
+        Column::words(words::METHOD_COLUMN, "method"),
+        Column::number(words::MAXIMUM, Some("mm"), "maximum_error_mm"),
+        Column::number(words::RMS, Some("mm"), "scatter_rms_mm"),
+        Column::number(words::LEFT_OUT_RMS, Some("mm"), "leave_one_out_rms_mm"),
+        Column::number(words::STD_POINT, Some("mm"), "workspace_point_std_mm"),
+    ];
+    if truth.is_some() {
+        columns.push(Column::number(words::POINT, Some("mm"), "from_truth_mm").under(words::FROM_TRUTH));
+        columns.push(Column::number(words::ROTATION, Some("°"), "from_truth_deg").under(words::FROM_TRUTH));
+    }
+    let best = target.best().map(|best| best.method);
+    let row = |result: &MethodResult| {
+        let name = Cell::words(method_name(result.method));
+        let name = if best == Some(result.method) { name.strong() } else { name };
+        let Ok(solution) = &result.outcome else {
+            return std::iter::once(name).chain((1..columns.len()).map(|_| Cell::missing())).collect();
+        };
+        let known = solution.uncertainty.as_ref();
+        let mut row = vec![
+            name,
+            Cell::number(maximum_error_mm(solution), ERROR_DECIMALS),
+            Cell::number(solution.scatter.rms_mm, ERROR_DECIMALS),
+            Cell::maybe(solution.leave_one_out.map(|left_out| left_out.rms_mm), ERROR_DECIMALS),
+            Cell::maybe(known.map(|known| known.workspace_point_std_mm), ERROR_DECIMALS),
+        ];
+        row.extend(truth.into_iter().flat_map(|truth| from_truth(solution, truth)));
+        row
+    };
+    Table {
+        id: format!("methods{suffix}"),
+        title: words::OVERVIEW.to_owned(),
+        rows: target.results().iter().map(row).collect(),
+        note: Some(words::errors_legend(&target.session.target).join(" · ")),
+        columns,
+    }
+}
+
+fn from_truth(solution: &Solution, truth: &crate::session::Truth) -> [Cell; 2] {
+    let distance = distance_from_truth(solution, truth);
+    let known = solution.uncertainty.as_ref();
+    let rotation_std_deg = known.map(|known| known.rotation_covariance().trace().max(0.0).sqrt().to_degrees());
+    // What an error is worth saying of, the uncertainty says.
+    [
+        Cell::number(distance.workspace_point_mm, decimals_for(known.map(|known| known.workspace_point_std_mm))),
+        Cell::number(distance.rotation_rad.to_degrees(), decimals_for(rotation_std_deg)),
+    ]
+}
+
+fn differences(rows: &[DifferenceRow], suffix: &str) -> Table {
+    let translation = ["Δx", "Δy", "Δz"].into_iter().zip(["x", "y", "z"]);
+    let translation =
+        translation.map(|(title, axis)| Column::number(title, Some("mm"), format!("difference_{axis}_mm")));
+    let row = |row: &DifferenceRow| {
+        let difference = &row.difference;
+        let names = pair(method_short_name(row.first), method_short_name(row.second));
+        let mut cells = vec![Cell::words(names)];
+        cells.extend(difference.translation_mm.iter().map(|value| Cell::signed(*value, ERROR_DECIMALS)));
+        cells.push(Cell::number(difference.rotation_rad.to_degrees(), 4));
+        cells.push(Cell::number(difference.workspace_point_mm, ERROR_DECIMALS));
+        cells.push(Cell::maybe(difference.in_stds, 1));
+        cells
+    };
+    Table {
+        id: format!("differences{suffix}"),
+        title: words::DIFFERENCES.to_owned(),
+        columns: std::iter::once(Column::words(words::PAIR, "methods"))
+            .chain(translation)
+            .chain([
+                Column::number(words::ROTATION, Some("°"), "rotation_deg"),
+                Column::number(words::AT_POINT, Some("mm"), "workspace_point_mm"),
+                Column::number(words::IN_STDS, None, "in_std"),
+            ])
+            .collect(),
+        rows: rows.iter().map(row).collect(),
+        note: Some(words::DIFFERENCES_NOTE.to_owned()),
+    }
+}

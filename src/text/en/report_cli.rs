@@ -1,0 +1,31 @@
+//! What `handeye report` prints.
+
+/// A file was written.
+#[must_use]
+pub fn wrote(file: &str) -> String {
+    format!("wrote {file}\n")
+}
+
+/// A name that no section has.
+#[must_use]
+pub fn no_such_section(ids: &[&str]) -> String {
+    format!("expected one of: {}", ids.join(", "))
+}
+
+/// A file that went away while it was read.
+#[must_use]
+pub fn unreadable(file: &str, problem: &std::io::Error) -> String {
+    format!("cannot read {file}: {problem}")
+}
+
+/// The report says why there is nothing in it.
+#[must_use]
+pub fn report_without_calibration(reason: &str) -> String {
+    format!("nothing could be computed, and the report says so: {reason}")
+}
+
+/// The page was not printed.
+#[must_use]
+pub fn no_pdf(reason: &str) -> String {
+    format!("no PDF: {reason}\n")
+}
