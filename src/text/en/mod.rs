@@ -14,6 +14,7 @@ pub mod diagnosis_panel;
 pub mod document;
 pub mod edges;
 pub mod edits;
+pub mod figures;
 pub mod import;
 pub mod import_bag;
 pub mod import_cli;
