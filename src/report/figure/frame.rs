@@ -50,7 +50,7 @@ pub(super) fn left_room(plot: &Plot, area: &Area) -> f64 {
 pub(super) fn view_in(plot: &Plot, area: &Area, left: f64) -> Extent {
     let mut rest = *area;
     if !plot.legend.is_empty() {
-        rest.min[1] += Page::default().legend(&plot.legend, &rest) + LEGEND_GAP;
+        rest.min[1] += Page::default().legend(&plot.legend, &legend_area(plot, &rest, left)) + LEGEND_GAP;
     }
     view_of(plot, &inner(plot, &rest, left))
 }
@@ -66,7 +66,7 @@ pub(super) fn draw(plot: &Plot, area: &Area, left: f64, page: &mut Page) {
         rest.min[1] += HEADING_HEIGHT;
     }
     if !plot.legend.is_empty() {
-        rest.min[1] += page.legend(&plot.legend, &rest) + LEGEND_GAP;
+        rest.min[1] += page.legend(&plot.legend, &legend_area(plot, &rest, left)) + LEGEND_GAP;
     }
     let area = inner_below(plot, &rest, left);
     let frame = Frame { plot, area, view: view_of(plot, &area) };
@@ -76,6 +76,12 @@ pub(super) fn draw(plot: &Plot, area: &Area, left: f64, page: &mut Page) {
     }
     frame.border(page);
     frame.notes(page);
+}
+
+/// Where a legend stands: below a heading it begins where that does.
+fn legend_area(plot: &Plot, area: &Area, left: f64) -> Area {
+    let inset = if plot.heading.is_some() { left - 2.0 } else { 0.0 };
+    Area::new([area.min[0] + inset, area.min[1]], area.max)
 }
 
 /// The plot's own rectangle in an area, were there no legend.
@@ -139,7 +145,9 @@ impl Frame<'_> {
                 .collect();
             // Every name, or every n-th where they are too wide to stand side by side.
             let every = ((widest(&all) + 5.0) / points_per_unit).ceil().max(1.0);
-            return all.into_iter().filter(|(at, _)| at % every < 0.5).collect();
+            let last = whole(all.len().saturating_sub(1));
+            let is_kept = |at: f64| at + 0.5 > last || (at % every < 0.5 && at + every < last + 0.5);
+            return all.into_iter().filter(|(at, _)| is_kept(*at)).collect();
         }
         if self.plot.x.is_logarithmic {
             return decades(range, points_per_unit);
@@ -338,9 +346,12 @@ impl Frame<'_> {
                 Mark::Dots { points, .. } | Mark::Markers { points, .. } => {
                     points_too.extend(points.iter().map(|point| self.at(*point)));
                 }
-                Mark::Line { points, .. } => {
+                // Words may stand on dots.
+                Mark::Line { points, dash, .. } if *dash != Dash::Dotted => {
                     let places: Vec<Place> = points.iter().map(|point| self.at(*point)).collect();
-                    clipped_line(&places, &self.area).iter().for_each(|run| along(run));
+                    for run in clipped_line(&places, &self.area) {
+                        along(&run);
+                    }
                 }
                 Mark::Across { at, is_upright, .. } => along(&if *is_upright {
                     self.view.y.map(|y| self.at([*at, y]))
@@ -353,7 +364,7 @@ impl Frame<'_> {
                     along(&[self.at([middle, 0.0]), self.at([middle, *y])]);
                 }
                 Mark::Cross { at, .. } => points_too.push(self.at(*at)),
-                Mark::Band { .. } | Mark::Area { .. } => {}
+                Mark::Line { .. } | Mark::Band { .. } | Mark::Area { .. } => {}
             }
         }
         crowd.extend(points_too.into_iter().filter(|place| self.area.holds(*place)));

@@ -115,13 +115,15 @@ impl Page {
     /// A legend in rows as wide as the area, from its top on; answers its height.
     pub fn legend(&mut self, entries: &[Entry], area: &Area) -> f64 {
         const GAP: f64 = 12.0;
-        let (mut x, mut row) = (area.min[0], 0.0);
+        // A little inside, so that the first sign does not touch the border of the page.
+        let start = area.min[0] + 2.0;
+        let (mut x, mut row) = (start, 0.0);
         for entry in entries {
-            let room = area.width() - SIGN_WIDTH - 4.0;
+            let room = area.width() - SIGN_WIDTH - 6.0;
             let text = shortened(&entry.text, TEXT_SIZE, Weight::Regular, room);
             let width = SIGN_WIDTH + 4.0 + typeface::width(&text, TEXT_SIZE, Weight::Regular);
-            if x > area.min[0] && x + width > area.max[0] {
-                x = area.min[0];
+            if x > start && x + width > area.max[0] {
+                x = start;
                 row += 1.0;
             }
             let middle = area.min[1] + LEGEND_ROW * (row + 0.5);

@@ -187,11 +187,14 @@ pub fn distances_title(target: &str, num_left_out: usize) -> String {
 #[must_use]
 pub fn stability_title(target: &str, is_touched: bool, num_left_out: usize) -> String {
     let from = if is_touched { "the touched point" } else { "the mean" };
-    format!("One point measured many times, against {from}: {target}{}", without(num_left_out))
+    format!(
+        "One point measured many times, against {from}, and at the right its mean ± 3δ: {target}{}",
+        without(num_left_out)
+    )
 }
 
-/// Legend of the limits at three standard deviations.
-pub const THREE_DELTA: &str = "mean ± 3δ";
+/// Name of the place where the limits at three standard deviations stand.
+pub const THREE_DELTA: &str = "±3δ";
 /// Axis title.
 pub const MEASUREMENT_AXIS: &str = "measurement";
 /// Axis title.

@@ -57,18 +57,40 @@ pub(super) fn grouped(names: Vec<String>, x_title: &str, y_title: &str, series: 
     plot
 }
 
+/// Bars of the only kind there is.
+pub(super) const fn plain(values: Vec<Option<f64>>) -> Series {
+    Series { color: palette::INLIER, filling: Filling::Solid, marker: None, values }
+}
+
+/// One bar a name; those that something is said against are hatched as well as coloured.
+pub(super) fn with_accused(names: Vec<String>, x_title: &str, y_title: &str, bars: &[(f64, bool)]) -> Plot {
+    let mut plot = grouped(names, x_title, y_title, &[plain(bars.iter().map(|(value, _)| Some(*value)).collect())]);
+    for mark in &mut plot.marks {
+        if let Mark::Bar { x, color, filling, .. } = mark {
+            let middle = f64::midpoint(x[0], x[1]);
+            let is_its = |place: usize| (whole(place) - middle).abs() < 0.4;
+            if bars.iter().enumerate().any(|(place, (_, is_accused))| *is_accused && is_its(place)) {
+                (*color, *filling) = (palette::BAD, Filling::Hatched);
+            }
+        }
+    }
+    plot
+}
+
 /// Distances of one kind, for a histogram.
 pub(super) struct Distances {
     pub color: Rgb,
     pub filling: Filling,
-    pub distances_mm: Vec<f64>,
+    /// At the end of each bar, so that it can be told without colour.
+    pub marker: Option<Marker>,
+    /// The values, mm.
+    pub mm: Vec<f64>,
 }
 
 /// Distances of several kinds as one histogram, their bars side by side, with one width of bins for all.
 pub(super) fn histogram(x_title: &str, y_title: &str, all: &[Distances]) -> Plot {
-    let finite = |kind: &Distances| -> Vec<f64> {
-        kind.distances_mm.iter().copied().filter(|distance| distance.is_finite()).collect()
-    };
+    let finite =
+        |kind: &Distances| -> Vec<f64> { kind.mm.iter().copied().filter(|distance| distance.is_finite()).collect() };
     let distances: Vec<Vec<f64>> = all.iter().map(finite).collect();
     let max_mm = distances.iter().flatten().copied().fold(0.0, f64::max);
     let most = distances.iter().map(Vec::len).max().unwrap_or_default();
@@ -85,6 +107,11 @@ pub(super) fn histogram(x_title: &str, y_title: &str, all: &[Distances]) -> Plot
             let left = (whole(bin) + (1.0 - BIN_PART) / 2.0) * width_mm + whole(kind_idx) * bar_mm;
             let x = [left + 0.03 * bar_mm, left + 0.97 * bar_mm];
             plot.mark(Mark::Bar { x, y: whole(count), color: kind.color, filling: kind.filling });
+            if let Some(shape) = kind.marker {
+                let points = vec![[left + bar_mm / 2.0, whole(count)]];
+                let stroke = Stroke::new(0.5, Rgb::WHITE);
+                plot.mark(Mark::Markers { points, shape, radius: 2.0, fill: Some(kind.color), stroke });
+            }
         }
     }
     plot.level(0.0, Stroke::new(0.6, palette::TEXT_DIM), Dash::Solid);

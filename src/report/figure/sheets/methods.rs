@@ -27,7 +27,10 @@ pub(super) fn figures(target: &TargetEvidence) -> Vec<Figure> {
     if tables.is_empty() {
         return Vec::new();
     }
-    errors(&model.target, &tables).into_iter().chain(scatter(&model.target, &tables)).collect()
+    // As in the window, the published stop stands in the bars only: it would squeeze the others into one point.
+    let others: Vec<(Method, &MethodTable)> =
+        tables.iter().copied().filter(|(method, _)| *method != Method::BallMaxArcStep).collect();
+    errors(&model.target, &tables).into_iter().chain(scatter(&model.target, &others)).collect()
 }
 
 fn legend(tables: &[(Method, &MethodTable)]) -> Vec<Entry> {

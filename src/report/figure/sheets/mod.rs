@@ -2,6 +2,7 @@
 
 mod arcs;
 mod bars;
+mod findings;
 mod methods;
 mod other_data;
 mod reliance;
@@ -22,23 +23,25 @@ pub fn figures_of(evidence: &Evidence) -> Vec<Figure> {
     let mut figures = setup::figures(evidence);
     let has_several = evidence.targets.len() > 1;
     for (target, number) in evidence.targets.iter().zip(1..) {
-        let of_target = [arcs::figures, methods::figures, reliance::figures].into_iter().flat_map(|make| make(target));
-        figures.extend(of_target.map(|figure| match has_several {
-            true => Figure {
-                id: format!("target-{number}-{}", figure.id),
-                title: words::of_target(&figure.title, &target.name),
-                alt: words::of_target(&figure.alt, &target.name),
-                ..figure
-            },
-            false => figure,
+        let makers = [arcs::figures, methods::figures, reliance::figures, findings::figures];
+        let of_target = makers.into_iter().flat_map(|make| make(target));
+        figures.extend(of_target.map(|mut figure| {
+            if has_several {
+                figure.id = format!("target-{number}-{}", figure.id);
+                figure.title = words::of_target(&figure.title, &target.name);
+                figure.alt = words::of_target(&figure.alt, &target.name);
+            }
+            figure
         }));
     }
     figures.extend(evidence.verification.iter().flat_map(other_data::figures));
     let has_several = evidence.parts.len() > 1;
     for (part, number) in evidence.parts.iter().zip(1..) {
-        figures.extend(workpiece::figures(part).into_iter().map(|figure| match has_several {
-            true => Figure { id: format!("part-{number}-{}", figure.id), ..figure },
-            false => figure,
+        figures.extend(workpiece::figures(part).into_iter().map(|mut figure| {
+            if has_several {
+                figure.id = format!("part-{number}-{}", figure.id);
+            }
+            figure
         }));
     }
     figures

@@ -1,6 +1,7 @@
 //! What calibrations are worth on other data: distances to lines and plane, a known point, other targets.
 
 use crate::calibrate::Problem;
+use crate::geometry::Vec3;
 use crate::report::figure::frame::whole;
 use crate::report::figure::ink::Stroke;
 use crate::report::figure::palette::{self, CalibrationLook, Marker, Rgb, calibration_look};
@@ -8,7 +9,7 @@ use crate::report::figure::plot::{Axis, Dash, Entry, Mark, Plot, Sign};
 use crate::report::figure::{Extent, Figure};
 use crate::text::figures as words;
 use crate::text::verify as shared;
-use crate::verify::{Distances, Measurement, Stability, TargetEvidence, Verification};
+use crate::verify::{Distances, EdgePoint, Measurement, TargetEvidence, Verification};
 
 use super::bars::{self, entry_of, filling_of, histogram};
 use super::sheet::Sheet;
@@ -16,7 +17,7 @@ use super::sheet::Sheet;
 /// A calibration whose distances are so many times those of the best would squeeze all others into one bar.
 const FAR_OFF: f64 = 8.0;
 /// More calibrations than this in one plot cannot be told apart.
-const MOST_SHOWN: usize = 6;
+const MOST_SHOWN: usize = 4;
 /// More measurements than this have no room for a marker each.
 const MOST_MEASUREMENTS: usize = 120;
 
@@ -92,17 +93,18 @@ fn distances(target: &TargetEvidence, looks: &[Look], suffix: &str) -> Option<Fi
     let legend: Vec<Entry> = shown.iter().map(|(look, _)| look.entry()).collect();
     let mut sheet = Sheet::new(220.0);
     let areas = sheet.legend_over_columns(&legend);
-    let kinds: [(&str, &str, fn(&crate::verify::EdgePoint) -> f64); 2] = [
-        (shared::LINE_HISTOGRAM, shared::LINE_AXIS, |point| point.to_line_mm),
-        (shared::PLANE_HISTOGRAM, shared::PLANE_AXIS, |point| point.to_plane_mm),
-    ];
+    let to_line: fn(&EdgePoint) -> f64 = |point| point.to_line_mm;
+    let to_plane: fn(&EdgePoint) -> f64 = |point| point.to_plane_mm;
+    let kinds =
+        [(shared::LINE_HISTOGRAM, shared::LINE_AXIS, to_line), (shared::PLANE_HISTOGRAM, shared::PLANE_AXIS, to_plane)];
     for ((heading, x_title, distance), area) in kinds.into_iter().zip(areas) {
         let all: Vec<bars::Distances> = shown
             .iter()
             .map(|(look, distances)| bars::Distances {
                 color: look.look.color,
                 filling: filling_of(&look.look),
-                distances_mm: distances.points.iter().map(distance).collect(),
+                marker: Some(look.look.marker),
+                mm: distances.points.iter().map(distance).collect(),
             })
             .collect();
         let mut plot = histogram(x_title, shared::POINTS_AXIS, &all);
@@ -114,12 +116,12 @@ fn distances(target: &TargetEvidence, looks: &[Look], suffix: &str) -> Option<Fi
 }
 
 fn stability(target: &TargetEvidence, looks: &[Look], suffix: &str) -> Option<Figure> {
-    let found: Vec<(f64, (&Look, &[Measurement], &Stability))> = looks
+    let found: Vec<_> = looks
         .iter()
         .zip(&target.rows)
         .filter_map(|(look, row)| {
             let (measurements, stability) = row.as_ref().ok()?.stability()?;
-            let reach = stability.deviations_mm.iter().map(|deviation| deviation.norm()).fold(0.0, f64::max);
+            let reach = stability.deviations_mm.iter().map(Vec3::norm).fold(0.0, f64::max);
             Some((reach, (look, measurements, stability)))
         })
         .collect();
@@ -131,12 +133,16 @@ fn stability(target: &TargetEvidence, looks: &[Look], suffix: &str) -> Option<Fi
     let names: Vec<String> = measurements.iter().map(Measurement::name).collect();
     let mut reach_mm = 0.001_f64;
     for (_, _, stability) in &shown {
-        let largest = stability.deviations_mm.iter().map(|deviation| deviation.amax());
-        reach_mm =
-            largest.chain([stability.three_std_mm().amax()]).filter(|size| size.is_finite()).fold(reach_mm, f64::max);
+        let largest = stability.deviations_mm.iter().map(Vec3::amax);
+        reach_mm = largest
+            .chain([(stability.mean_mm.abs() + stability.three_std_mm()).amax()])
+            .filter(|size| size.is_finite())
+            .fold(reach_mm, f64::max);
     }
-    let mut legend: Vec<Entry> = shown.iter().map(|(look, ..)| look.entry()).collect();
-    legend.push(Entry::new(Sign::Line(Dash::Dashed), palette::TEXT_DIM, words::THREE_DELTA));
+    let legend: Vec<Entry> = shown.iter().map(|(look, ..)| look.entry()).collect();
+    // The limits stand at the right, in a place of their own.
+    let limits = whole(names.len());
+    let names: Vec<String> = names.into_iter().chain([words::THREE_DELTA.to_owned()]).collect();
     let plots: Vec<Plot> = ["Δx / mm", "Δy / mm", "Δz / mm"]
         .into_iter()
         .enumerate()
@@ -147,18 +153,16 @@ fn stability(target: &TargetEvidence, looks: &[Look], suffix: &str) -> Option<Fi
             plot.is_view_final = true;
             plot.x.is_labelled = axis == 2;
             plot.level(0.0, Stroke::new(0.6, palette::TEXT_DIM), Dash::Solid);
-            for (look, _, stability) in &shown {
-                let limit = stability.three_std_mm()[axis];
-                for level in [-limit, limit] {
-                    let level = stability.mean_mm[axis] + level;
-                    plot.level(level, Stroke::new(0.7, look.look.color), Dash::Dashed);
-                }
-            }
+            let stroke = Stroke::new(0.5, palette::UNUSED);
+            plot.mark(Mark::Across { at: limits - 0.5, is_upright: true, stroke, dash: Dash::Solid });
             for (place, (look, _, stability)) in shown.iter().enumerate() {
                 // Side by side, so that none covers another.
                 let aside = (whole(place) - whole(shown.len() - 1) / 2.0) * 0.5 / whole(shown.len());
                 let points = stability.deviations_mm.iter().enumerate();
                 plot.mark(look.markers(points.map(|(idx, deviation)| [whole(idx) + aside, deviation[axis]]).collect()));
+                let (at, std) = ([limits + aside, stability.mean_mm[axis]], stability.three_std_mm()[axis]);
+                plot.mark(Mark::ErrorBar { at, std, stroke: Stroke::new(1.0, look.look.color) });
+                plot.mark(look.markers(vec![at]));
             }
             plot
         })

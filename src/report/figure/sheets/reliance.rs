@@ -6,14 +6,14 @@ use crate::report::evidence::TargetEvidence;
 use crate::report::figure::frame::whole;
 use crate::report::figure::ink::Stroke;
 use crate::report::figure::model::station_bars;
-use crate::report::figure::palette::{self, Marker, Rgb};
+use crate::report::figure::palette::{self, Marker};
 use crate::report::figure::plot::{Axis, Dash, Entry, Filling, Mark, Plot, Sign};
 use crate::report::figure::{Extent, Figure};
 use crate::text::diagnosis_panel as shared;
 use crate::text::figures as words;
 use crate::text::typeset::std_text;
 
-use super::bars::{Series, grouped};
+use super::bars::{grouped, plain, with_accused};
 use super::sheet::Sheet;
 
 /// Residuals beyond these are rare, and hardly chance.
@@ -45,10 +45,9 @@ fn influence(stations: &[Influence], left_out: Option<&Evidence>) -> Option<Figu
         plots.push(plot);
     }
     let is_rare = |station: &&Influence| station.studentised_residual.abs() > RARE[1];
-    let split = |wanted: bool| -> Vec<Option<f64>> {
-        stations.iter().map(|station| (is_rare(&station) == wanted).then_some(station.studentised_residual)).collect()
-    };
-    let mut residuals = overlaid(names.clone(), shared::STUDENTISED_AXIS, [split(false), split(true)]);
+    let bars: Vec<(f64, bool)> =
+        stations.iter().map(|station| (station.studentised_residual, is_rare(&station))).collect();
+    let mut residuals = with_accused(names.clone(), "", shared::STUDENTISED_AXIS, &bars);
     for level in RARE {
         residuals.level(level, Stroke::new(0.8, palette::WARN), Dash::Dashed);
         residuals.view.y[1] = residuals.view.y[1].max(level * 1.12);
@@ -68,27 +67,6 @@ fn influence(stations: &[Influence], left_out: Option<&Evidence>) -> Option<Figu
     let stacked: Vec<(f64, &Plot)> = plots.iter().map(|plot| (1.0, plot)).collect();
     sheet.stack(&stacked, &area);
     Some(sheet.figure("influence", words::INFLUENCE_TITLE, words::INFLUENCE_TITLE))
-}
-
-const fn plain(values: Vec<Option<f64>>) -> Series {
-    Series { color: palette::INLIER, filling: Filling::Solid, marker: None, values }
-}
-
-/// Ordinary bars, and hatched ones in place of those that stand out.
-fn overlaid(names: Vec<String>, y_title: &str, [ordinary, rare]: [Vec<Option<f64>>; 2]) -> Plot {
-    let both = ordinary.iter().zip(&rare).map(|(ordinary, rare)| ordinary.or(*rare)).collect();
-    let mut plot = grouped(names, "", y_title, &[plain(both)]);
-    for mark in &mut plot.marks {
-        if let Mark::Bar { x, color, filling, .. } = mark {
-            let middle = f64::midpoint(x[0], x[1]);
-            let is_rare =
-                rare.iter().enumerate().any(|(place, value)| value.is_some() && (whole(place) - middle).abs() < 0.4);
-            if is_rare {
-                (*color, *filling) = (palette::BAD, Filling::Hatched);
-            }
-        }
-    }
-    plot
 }
 
 /// Two halves of the stations beside the distribution of the residuals.
@@ -116,7 +94,9 @@ fn split_plot(split: &SplitHalf) -> Plot {
     let mut extent = Extent::NOTHING;
     extent.include(0.0, 0.0);
     extent.include(0.0, split.expected_mm);
-    points.iter().for_each(|point| extent.include(point[0], point[1]));
+    for [rank, apart_mm] in &points {
+        extent.include(*rank, *apart_mm);
+    }
     let mut plot = Plot::new(Axis::new(shared::SPLIT_AXIS), Axis::new(shared::APART_AXIS), extent);
     plot.heading = Some(shared::HALVES.to_owned());
     plot.legend = vec![
@@ -149,11 +129,5 @@ fn normality_plot(normality: &Normality) -> Plot {
 }
 
 const fn dots(points: Vec<[f64; 2]>) -> Mark {
-    Mark::Markers {
-        points,
-        shape: Marker::Circle,
-        radius: 1.6,
-        fill: Some(palette::INLIER),
-        stroke: Stroke::new(0.3, Rgb::WHITE),
-    }
+    Mark::Dots { points, radius: 1.4, color: palette::INLIER, is_hollow: false }
 }

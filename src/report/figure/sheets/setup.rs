@@ -47,11 +47,13 @@ fn sketch(evidence: &Evidence) -> Option<Figure> {
         let name = (poses.len() <= MOST_NAMED).then_some(*label);
         scene.triad(pose, Triad { name, is_strong: false });
         let base_from_sensor = if is_fixed { *sensor } else { **pose * *sensor };
-        if place < MOST_LASER_PLANES && (place == 0 || !is_fixed) {
-            if let Some(line) = laser_line(target, *idx) {
-                let ends = line.map(|end| in_base(&base_from_sensor, end));
-                scene.laser_plane(base_from_sensor.translation.vector, ends);
-            }
+        if !is_fixed {
+            scene.holder(pose.translation.vector, base_from_sensor.translation.vector);
+        }
+        let has_plane = place < MOST_LASER_PLANES && (place == 0 || !is_fixed);
+        if let Some(line) = laser_line(target, *idx).filter(|_| has_plane) {
+            let ends = line.map(|end| in_base(&base_from_sensor, end));
+            scene.laser_plane(base_from_sensor.translation.vector, ends);
         }
         if is_fixed {
             mark_target(&mut scene, session, solution, Some(pose));

@@ -62,9 +62,11 @@ impl Sheet {
         let sum: f64 = plots.iter().map(|(part, _)| part).sum();
         let left = plots.iter().map(|(_, plot)| frame::left_room(plot, area)).fold(0.0, f64::max);
         let mut top = area.min[1];
-        for (part, plot) in plots {
+        for (place, (part, plot)) in plots.iter().enumerate() {
+            const BETWEEN: f64 = 4.0;
             let bottom = top + area.height() * part / sum;
-            frame::draw(plot, &Area::new([area.min[0], top], [area.max[0], bottom]), left, &mut self.page);
+            let end = if place + 1 < plots.len() { bottom - BETWEEN } else { bottom };
+            frame::draw(plot, &Area::new([area.min[0], top], [area.max[0], end]), left, &mut self.page);
             top = bottom;
         }
     }

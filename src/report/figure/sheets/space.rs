@@ -6,6 +6,7 @@ use crate::report::figure::ink::{Align, Area, Fill, Place, Stroke};
 use crate::report::figure::page::{Page, TEXT_SIZE, label, on_middle};
 use crate::report::figure::palette::{self, Marker, Rgb};
 use crate::report::figure::plot::{Dash, ellipse};
+use crate::report::figure::typeface::{self, Weight};
 
 /// Axes of a frame are so long, as a part of the scene's size; those of the base longer.
 const AXIS_PART: f64 = 0.055;
@@ -24,11 +25,27 @@ pub(super) struct Triad<'a> {
 /// Something in the scene.
 #[derive(Clone, Debug)]
 enum Thing {
-    Frame { pose: Rigid, name: Option<String>, is_strong: bool },
+    Frame {
+        pose: Rigid,
+        name: Option<String>,
+        is_strong: bool,
+    },
+    /// From the flange to its sensor.
+    Holder([Vec3; 2]),
     LaserPlane([Vec3; 3]),
-    Ball { centre: Vec3, radius_mm: f64, color: Rgb },
-    Plate { corners: [Vec3; 3], color: Rgb },
-    Point { at: Vec3, color: Rgb },
+    Ball {
+        centre: Vec3,
+        radius_mm: f64,
+        color: Rgb,
+    },
+    Plate {
+        corners: [Vec3; 3],
+        color: Rgb,
+    },
+    Point {
+        at: Vec3,
+        color: Rgb,
+    },
 }
 
 impl Thing {
@@ -36,6 +53,7 @@ impl Thing {
     fn reach(&self) -> Vec<Vec3> {
         match self {
             Self::Frame { pose, .. } => vec![pose.translation.vector],
+            Self::Holder(ends) => ends.to_vec(),
             Self::LaserPlane(corners) => corners.to_vec(),
             Self::Ball { centre, radius_mm, .. } => {
                 [-*radius_mm, *radius_mm].map(|radius| centre + Vec3::repeat(radius * 0.58)).to_vec()
@@ -43,6 +61,13 @@ impl Thing {
             Self::Plate { corners: [p, corner, q], .. } => vec![*p, *corner, *q, p + q - corner],
             Self::Point { at, .. } => vec![*at],
         }
+    }
+
+    /// The ends of the axes of a frame.
+    fn axis_ends(&self, axis_mm: f64) -> Vec<Vec3> {
+        let Self::Frame { pose, is_strong, .. } = self else { return Vec::new() };
+        let length = axis_mm * if *is_strong { STRONG } else { 1.0 };
+        [Vec3::x(), Vec3::y(), Vec3::z()].map(|axis| pose.translation.vector + pose.rotation * (axis * length)).to_vec()
     }
 
     fn middle(&self) -> Vec3 {
@@ -63,6 +88,11 @@ impl Scene {
     /// A frame.
     pub fn triad(&mut self, pose: &Rigid, triad: Triad<'_>) {
         self.things.push(Thing::Frame { pose: *pose, name: triad.name.map(str::to_owned), is_strong: triad.is_strong });
+    }
+
+    /// What holds the sensor to the flange.
+    pub fn holder(&mut self, flange: Vec3, sensor: Vec3) {
+        self.things.push(Thing::Holder([flange, sensor]));
     }
 
     /// The part of a laser plane between the sensor and what it lights.
@@ -94,20 +124,20 @@ impl Scene {
         let (low, high) = reach.iter().fold((*first, *first), |(low, high), point| (low.inf(point), high.sup(point)));
         let size_mm = (high - low).norm().max(1.0);
         let axis_mm = AXIS_PART * size_mm;
-        let seen: Vec<Vec3> = reach.iter().map(|point| orbit.seen(*point)).collect();
-        let margin = STRONG * axis_mm;
+        let ends = self.things.iter().flat_map(|thing| thing.axis_ends(axis_mm));
         let (mut min, mut max) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for point in &seen {
+        for point in reach.iter().copied().chain(ends).map(|point| orbit.seen(point)) {
             min = [min[0].min(point.x), min[1].min(point.y)];
             max = [max[0].max(point.x), max[1].max(point.y)];
         }
-        let room = area.grown(-6.0);
-        let scale =
-            (room.width() / (max[0] - min[0] + 2.0 * margin)).min(room.height() / (max[1] - min[1] + 2.0 * margin));
+        // Room for the names around it.
+        let room = area.grown(-14.0);
+        let scale = (room.width() / (max[0] - min[0]).max(1e-9)).min(room.height() / (max[1] - min[1]).max(1e-9));
         let centre = [f64::midpoint(min[0], max[0]), f64::midpoint(min[1], max[1])];
         let view = View { orbit, scale, centre, page_centre: room.centre(), axis_mm };
         // From far to near, so that what is in front covers what is behind it; frames last, as they are thin.
-        let depth = |thing: &Thing| (matches!(thing, Thing::Frame { .. }), orbit.seen(thing.middle()).z);
+        let depth =
+            |thing: &Thing| (matches!(thing, Thing::Frame { .. } | Thing::Holder(_)), orbit.seen(thing.middle()).z);
         self.things.sort_by(|a, b| {
             let (a, b) = (depth(a), depth(b));
             a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
@@ -116,7 +146,7 @@ impl Scene {
             view.thing(thing, page);
         }
         for thing in &self.things {
-            view.names(thing, &room, page);
+            view.names(thing, area, page);
         }
         view.scale_bar(area, page);
     }
@@ -141,9 +171,9 @@ impl View {
         ]
     }
 
-    fn axes(&self, pose: &Rigid, is_strong: bool) -> [Place; 3] {
-        let length = self.axis_mm * if is_strong { STRONG } else { 1.0 };
-        [Vec3::x(), Vec3::y(), Vec3::z()].map(|axis| self.at(pose.translation.vector + pose.rotation * (axis * length)))
+    /// The ends of the axes of a frame on the page.
+    fn axes(&self, thing: &Thing) -> Vec<Place> {
+        thing.axis_ends(self.axis_mm).into_iter().map(|end| self.at(end)).collect()
     }
 
     fn thing(&self, thing: &Thing, page: &mut Page) {
@@ -151,11 +181,14 @@ impl View {
             Thing::Frame { pose, is_strong, .. } => {
                 let origin = self.at(pose.translation.vector);
                 let width = if *is_strong { 1.4 } else { 0.9 };
-                for (end, color) in self.axes(pose, *is_strong).into_iter().zip(palette::AXES) {
+                for (end, color) in self.axes(thing).into_iter().zip(palette::AXES) {
                     page.line(vec![origin, end], Stroke::new(width, color), Dash::Solid);
                 }
                 let radius = if *is_strong { 2.4 } else { 1.6 };
                 page.marker(Marker::Circle, origin, radius, Some(Fill::solid(palette::TEXT)), None);
+            }
+            Thing::Holder(ends) => {
+                page.line(ends.map(|end| self.at(end)).to_vec(), Stroke::new(0.6, palette::UNUSED), Dash::Solid);
             }
             Thing::LaserPlane(corners) => {
                 let corners = corners.map(|corner| self.at(corner));
@@ -189,44 +222,32 @@ impl View {
         let origin = self.at(pose.translation.vector);
         if *is_strong {
             for (end, (letter, color)) in
-                self.axes(pose, true).into_iter().zip(["x", "y", "z"].into_iter().zip(palette::AXES))
+                self.axes(thing).into_iter().zip(["x", "y", "z"].into_iter().zip(palette::AXES))
             {
                 let along = [end[0] - origin[0], end[1] - origin[1]];
                 let length = along[0].hypot(along[1]).max(1e-9);
                 let at = [0, 1].map(|axis| end[axis] + along[axis] / length * 6.0);
-                self.name(letter, at, color, room, page);
+                name_at(letter, at, color, room, page);
             }
         }
         if let Some(name) = name {
             // Away from the axes.
-            let middle =
-                self.axes(pose, *is_strong).iter().fold([0.0; 2], |sum, end| [sum[0] + end[0], sum[1] + end[1]]);
+            let middle = self.axes(thing).iter().fold([0.0; 2], |sum, end| [sum[0] + end[0], sum[1] + end[1]]);
             let away = [origin[0] - middle[0] / 3.0, origin[1] - middle[1] / 3.0];
             let length = away[0].hypot(away[1]).max(1e-9);
             for distance in [8.0, 11.0, 15.0, 20.0] {
                 for turn in [0.0_f64, 0.6, -0.6, 1.2, -1.2, 1.9, -1.9, 2.6, -2.6] {
                     let (sin, cos) = turn.sin_cos();
                     let along = [(away[0] * cos - away[1] * sin) / length, (away[0] * sin + away[1] * cos) / length];
-                    let at = [origin[0] + along[0] * distance, origin[1] + along[1] * distance];
-                    if self.name(name, at, palette::TEXT, room, page) {
+                    // A wide name stands farther off sideways.
+                    let aside = distance + (typeface::width(name, TEXT_SIZE, Weight::Regular) / 2.0 - 3.0).max(0.0);
+                    let at = [origin[0] + along[0] * aside, origin[1] + along[1] * distance];
+                    if name_at(name, at, palette::TEXT, room, page) {
                         return;
                     }
                 }
             }
         }
-    }
-
-    /// Writes a name about a place if nothing else is written there.
-    fn name(&self, text: &str, [x, y]: Place, color: Rgb, room: &Area, page: &mut Page) -> bool {
-        let mut label = label(text, [x, on_middle(y, TEXT_SIZE)], color);
-        label.align = Align::Middle;
-        let area = label.area();
-        let is_free = room.holds_all(&area) && page.is_free(&area.grown(0.5));
-        if is_free {
-            page.area(area.outline().to_vec(), Fill::veil(Rgb::WHITE, 0.6));
-            page.write(label);
-        }
-        is_free
     }
 
     /// A length to compare with, at the lower right.
@@ -245,4 +266,17 @@ impl View {
         label.align = Align::Middle;
         page.write(label);
     }
+}
+
+/// Writes a name about a place if nothing else is written there.
+fn name_at(text: &str, [x, y]: Place, color: Rgb, room: &Area, page: &mut Page) -> bool {
+    let mut label = label(text, [x, on_middle(y, TEXT_SIZE)], color);
+    label.align = Align::Middle;
+    let area = label.area();
+    let is_free = room.holds_all(&area) && page.is_free(&area.grown(0.5));
+    if is_free {
+        page.area(area.outline().to_vec(), Fill::veil(Rgb::WHITE, 0.6));
+        page.write(label);
+    }
+    is_free
 }

@@ -37,7 +37,8 @@ fn planes(part: &PartEvidence) -> Option<Figure> {
         .map(|((idx, region), filling)| Distances {
             color: region_color(*idx),
             filling,
-            distances_mm: region.distances_mm.iter().map(|distance| distance.abs()).collect(),
+            marker: None,
+            mm: region.distances_mm.iter().map(|distance| distance.abs()).collect(),
         })
         .collect();
     let mut plot = histogram(words::PLANE_DISTANCE_AXIS, crate::text::verify::POINTS_AXIS, &all);
@@ -57,10 +58,11 @@ fn teeth_figure(part: &PartEvidence, teeth: &Teeth) -> Option<Figure> {
         teeth.teeth.iter().enumerate().filter_map(|(idx, tooth)| Some((idx, of(tooth)?))).collect()
     };
     let Known { pitch_mm, height_mm, .. } = part.known;
-    let pitch = values_plot(&values(|tooth| tooth.pitch), pitch_mm, words::PITCH_AXIS);
-    let height = values_plot(&values(|tooth| tooth.height), height_mm, words::HEIGHT_AXIS);
+    let num_teeth = teeth.teeth.len();
+    let pitch = values_plot(&values(|tooth| tooth.pitch), num_teeth, pitch_mm, words::PITCH_AXIS);
+    let height = values_plot(&values(|tooth| tooth.height), num_teeth, height_mm, words::HEIGHT_AXIS);
     let mut plots: Vec<Plot> = pitch.into_iter().chain(height).collect();
-    plots.last_mut()?.x.title = words::TOOTH_AXIS.to_owned();
+    words::TOOTH_AXIS.clone_into(&mut plots.last_mut()?.x.title);
     let mut legend =
         vec![Entry::new(Sign::Solid(Marker::Circle), palette::INLIER, crate::text::arcs::MEASURED.to_owned() + " ± σ")];
     if pitch_mm.or(height_mm).is_some() {
@@ -75,9 +77,9 @@ fn teeth_figure(part: &PartEvidence, teeth: &Teeth) -> Option<Figure> {
 }
 
 /// One value a tooth with its σ, and the nominal one.
-fn values_plot(values: &[(usize, Measured)], nominal_mm: Option<f64>, y_title: &str) -> Option<Plot> {
-    let (last, _) = values.last()?;
-    let mut extent = Extent { x: [0.4, whole(*last) + 1.6], y: [f64::INFINITY, f64::NEG_INFINITY] };
+fn values_plot(values: &[(usize, Measured)], num_teeth: usize, nominal_mm: Option<f64>, y_title: &str) -> Option<Plot> {
+    values.first()?;
+    let mut extent = Extent { x: [0.4, whole(num_teeth) + 0.6], y: [f64::INFINITY, f64::NEG_INFINITY] };
     for (_, measured) in values {
         extent.include(1.0, measured.value_mm - measured.std_mm);
         extent.include(1.0, measured.value_mm + measured.std_mm);
