@@ -84,7 +84,7 @@ fn check_self_contained(html: &str) {
     let places = html.match_indices("http").map(|(at, _)| &html[at..]);
     let formats = ["http://www.w3.org/2000/svg", "http://www.w3.org/1999/xlink"];
     for place in places {
-        assert!(formats.iter().any(|format| place.starts_with(format)), "{:.60}", place);
+        assert!(formats.iter().any(|format| place.starts_with(format)), "{place:.60}");
     }
 }
 
@@ -283,7 +283,11 @@ fn written(folder: &Path) -> BTreeSet<PathBuf> {
     while let Some(folder) = folders.pop() {
         for entry in fs::read_dir(&folder).expect("a folder") {
             let path = entry.expect("an entry").path();
-            if path.is_dir() { folders.push(path) } else { drop(files.insert(path)) }
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                files.insert(path);
+            }
         }
     }
     files
