@@ -24,8 +24,11 @@ fn sample(file_name: &str) -> Session {
     session::parse(sample.json.as_bytes(), sample.file_name).expect("a session")
 }
 
-/// Every sample with its figures and their SVG documents, made once for all tests.
-static SAMPLES: LazyLock<Vec<(&str, Vec<(Figure, String)>)>> = LazyLock::new(|| {
+/// A sample's file with its figures and their SVG documents.
+type Drawn = (&'static str, Vec<(Figure, String)>);
+
+/// Every sample, drawn once for all tests.
+static SAMPLES: LazyLock<Vec<Drawn>> = LazyLock::new(|| {
     let of_sample = |file_name: &'static str| {
         let drawn = figures(&sample(file_name)).into_iter().map(|figure| {
             let svg = figure.svg().expect("drawn");
@@ -163,15 +166,15 @@ fn every_sample_has_the_figures_that_its_data_allow() {
         };
         match *name {
             "plate.json" => {
-                has(&["setup", "trajectory", "profile", "errors", "scatter", "influence", "halves", "distances"])
+                has(&["setup", "trajectory", "profile", "errors", "scatter", "influence", "halves", "distances"]);
             }
             "tip.json" => has(&["setup", "trajectory", "profile", "profiles", "errors", "scatter", "stability"]),
             "workpiece.json" => {
-                has(&["trajectory", "part-1-plane-distances", "part-2-plane-distances", "part-2-teeth"])
+                has(&["trajectory", "part-1-plane-distances", "part-2-plane-distances", "part-2-teeth"]);
             }
             "three-targets.json" => has(&["setup", "target-2-errors", "stability-1", "distances-2", "cross-target"]),
             "lin-mu-2019-table-1.json" | "lin-mu-2019-table-2.json" => {
-                has(&["setup", "errors", "scatter", "stability"])
+                has(&["setup", "errors", "scatter", "stability"]);
             }
             "near-largest-arc.json" => has(&["profile", "profiles", "errors", "halves"]),
             _ => has(&[
