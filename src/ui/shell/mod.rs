@@ -342,7 +342,7 @@ impl Shell {
                 Step::Compare => compare::show(ui, &mut context, &mut self.compare),
                 Step::Diagnosis => diagnosis::show(ui, &mut context, &mut self.diagnosis),
                 Step::Verify => verify::show(ui, &mut context, &mut self.verify),
-                Step::Report => report::show(ui, &mut context, &mut self.report),
+                Step::Report => report::show(ui, &mut context, &mut self.report, &mut self.persisted.report),
             }
         });
     }
@@ -387,6 +387,7 @@ impl Shell {
             Action::ExportPoses => self.ask_for_paths(Purpose::ExportPoses),
             Action::ExportProfiles => self.ask_for_paths(Purpose::ExportProfiles),
             Action::ExportPoints => self.ask_for_paths(Purpose::ExportPoints),
+            Action::SaveReport => self.ask_for_paths(Purpose::ReportFolder),
             Action::OpenPoints => self.ask_for_paths(Purpose::OpenPoints),
             Action::ChooseCalibration => self.ask_for_paths(Purpose::Calibration),
             Action::ChooseWatchedFolder => self.ask_for_paths(Purpose::WatchedFolder),
