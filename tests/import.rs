@@ -18,7 +18,7 @@ fn import_text(text: &str) -> Imported {
 }
 
 fn try_text(text: &str, options: &ImportOptions) -> Result<Imported, ImportError> {
-    let sources = [Source { name: "pasted".to_owned(), text: text.to_owned() }];
+    let sources = [Source::from_text("pasted", text)];
     read(&sources, options, &PoseNotation::default(), &mut Unwatched)
 }
 
@@ -146,7 +146,7 @@ fn the_examples_of_the_documentation_are_read() {
     let examples = examples();
     assert!(examples.len() > 10);
     for (name, num_poses, num_readings, text) in examples {
-        let sources = [Source { name: name.clone(), text }];
+        let sources = [Source::from_text(name.clone(), text)];
         let imported = read(&sources, &ImportOptions::default(), &PoseNotation::default(), &mut Unwatched);
         let imported = imported.expect(&name);
         assert!(imported.problems.is_empty(), "{name}: {:?}", imported.problems);
@@ -158,7 +158,7 @@ fn the_examples_of_the_documentation_are_read() {
 #[track_caller]
 fn example(name: &str) -> Imported {
     let (name, _, _, text) = examples().into_iter().find(|example| example.0 == name).expect("an example");
-    let sources = [Source { name, text }];
+    let sources = [Source::from_text(name, text)];
     read(&sources, &ImportOptions::default(), &PoseNotation::default(), &mut Unwatched).expect("an import")
 }
 
@@ -245,8 +245,7 @@ fn the_work_object_of_a_module_is_in_its_own_units() {
 }
 
 fn import_files(files: &[(&str, &str)]) -> Imported {
-    let sources: Vec<Source> =
-        files.iter().map(|(name, text)| Source { name: (*name).to_owned(), text: (*text).to_owned() }).collect();
+    let sources: Vec<Source> = files.iter().map(|(name, text)| Source::from_text(*name, *text)).collect();
     read(&sources, &ImportOptions::default(), &PoseNotation::default(), &mut Unwatched).expect("an import")
 }
 
@@ -368,7 +367,7 @@ fn a_number_sign_in_a_name_begins_no_comment() {
 #[test]
 fn a_user_frame_that_is_given_moves_the_poses() {
     let (name, _, _, text) = examples().into_iter().find(|example| example.0 == "scan.ls").expect("an example");
-    let sources = [Source { name, text: text.replace("UF : 0", "UF : 2") }];
+    let sources = [Source::from_text(name, text.replace("UF : 0", "UF : 2"))];
     let plain = read(&sources, &ImportOptions::default(), &PoseNotation::default(), &mut Unwatched).expect("an import");
     assert!(plain.notes.contains(&Note::UserFrameTakenAsBase { frame: "UFRAME 2".to_owned(), num_poses: 2 }));
     let options =
@@ -388,7 +387,7 @@ fn yaml_gives_poses_with_their_points() {
     let Reading::Profile(profile) = &imported.stations[1].captures[0].reading else { panic!("a profile") };
     assert_eq!((profile.x_mm(), profile.z_mm()), ([-1.0, 0.0].as_slice(), [57.2, 57.0].as_slice()));
     let aliases = "a: &a [1, 2]\nb: [*a, *a]\n";
-    let sources = [Source { name: "bomb.yaml".to_owned(), text: aliases.to_owned() }];
+    let sources = [Source::from_text("bomb.yaml", aliases)];
     let refusal = read(&sources, &ImportOptions::default(), &PoseNotation::default(), &mut Unwatched);
     assert_eq!(
         refusal.expect_err("refused").to_string(),
@@ -455,6 +454,55 @@ fn what_is_exported_is_imported_the_same() {
     }
 }
 
+/// Names shared by several makers, a tool point, the inverse, other units: the exported table says it all by itself.
+#[test]
+fn an_exported_table_says_how_its_poses_are_written() {
+    use handeye::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
+    use handeye::geometry::{PoseConvention, Vec3, so3};
+    use handeye::session::export::{TableStyle, poses_csv};
+    use handeye::session::import::Separator;
+    let session = sample("clean-sweeps.json");
+    let tcp = Transform::from_parts(Vec3::new(0.1, -2.5, 150.25), so3::exp(Vec3::new(0.1, -0.2, 3.0)));
+    let mut notations = Vec::new();
+    for convention in PoseConvention::all() {
+        for is_odd in [false, true] {
+            notations.push(PoseNotation {
+                angle_unit: if is_odd { AngleUnit::Radians } else { AngleUnit::Degrees },
+                length_unit: if is_odd { LengthUnit::Metres } else { LengthUnit::Millimetres },
+                flange_from_tcp: is_odd.then_some(tcp),
+                is_inverse: is_odd,
+                ..PoseNotation::of(convention)
+            });
+        }
+    }
+    for orientation in [OrientationForm::QuaternionWxyz, OrientationForm::QuaternionXyzw] {
+        notations.push(PoseNotation { orientation, is_inverse: true, ..PoseNotation::default() });
+    }
+    let spreadsheet = TableStyle { separator: Separator::Semicolon, has_decimal_comma: true };
+    for notation in notations {
+        for style in [TableStyle::default(), spreadsheet] {
+            let imported = import_text(&poses_csv(&session, &notation, style));
+            assert_eq!(imported.options.notation, Some(notation));
+            for (found, expected) in imported.stations.iter().zip(&session.stations) {
+                for (found, expected) in found.captures.iter().zip(&expected.captures) {
+                    let (found, expected) = (&found.base_from_flange, &expected.base_from_flange);
+                    let apart_mm = (found.translation_mm() - expected.translation_mm()).norm();
+                    let apart_rad = so3::log(&(found.rotation().inverse() * expected.rotation())).norm();
+                    assert!(
+                        apart_mm < 1e-8 && apart_rad < 1e-10,
+                        "{}: {apart_mm}, {apart_rad}, {style:?} {found:?} {expected:?}",
+                        notation.text()
+                    );
+                }
+            }
+            assert_eq!(imported.stations.len(), session.stations.len());
+        }
+    }
+    let unknown = poses_csv(&session, &PoseNotation::default(), TableStyle::default());
+    let unknown = import_text(&unknown.replace("fanuc-wpr/", "of-tomorrow/"));
+    assert!(unknown.problems[0].found.contains("of-tomorrow"), "{:?}", unknown.problems);
+}
+
 #[test]
 fn the_edges_of_a_plate_are_read_from_their_column() {
     let table = "label,edge,x,y,z,w,p,r,px,py,pz\na,p,1,2,3,10,20,30,1,0,80\nb,Q,4,5,6,40,50,60,2,0,81\nc,-,7,8,9,15,25,35,3,0,82\n";
@@ -471,7 +519,7 @@ fn the_edges_of_a_plate_are_read_from_their_column() {
 #[test]
 fn a_session_adds_its_stations_to_another() {
     let text = include_str!("../sample_sessions/lin-mu-2019-table-1.json");
-    let sources = ["a.json", "b.json"].map(|name| Source { name: name.to_owned(), text: text.to_owned() });
+    let sources = ["a.json", "b.json"].map(|name| Source::from_text(name, text));
     let imported =
         read(&sources, &ImportOptions::default(), &PoseNotation::default(), &mut Unwatched).expect("an import");
     assert_eq!((imported.parts[0].kind, imported.stations.len()), (Kind::Session, 10));

@@ -165,7 +165,7 @@ fn check_large_file(name: &str, text: String, num_problems: usize) {
     let num_bytes = text.len();
     let before = PEAK.current_usage() - num_bytes;
     PEAK.reset_peak_usage();
-    let sources = [Source { name: name.to_owned(), text }];
+    let sources = [Source::from_text(name, text)];
     let started = Instant::now();
     let imported = read(&sources, &ImportOptions::default(), &PoseNotation::default(), &mut Unwatched);
     let (elapsed, taken) = (started.elapsed(), PEAK.peak_usage() - before);

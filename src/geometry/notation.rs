@@ -77,6 +77,10 @@ pub enum OrientationForm {
     QuaternionXyzw,
 }
 
+/// As [`PoseNotation::text`] names the forms and units of angles, in their order.
+const FORM_NAMES: [&str; 3] = ["angles", "quaternion-wxyz", "quaternion-xyzw"];
+const ANGLE_UNIT_NAMES: [&str; 2] = ["deg", "rad"];
+
 /// How a pose stands as six or seven numbers: three for the position, then those of the orientation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoseNotation {
@@ -167,6 +171,69 @@ impl PoseNotation {
     #[must_use]
     pub fn num_numbers(&self) -> usize {
         3 + self.orientation_names().len()
+    }
+
+    /// Everything about it in one word, as tables of poses carry it: [`Self::from_text`] gives it back to the bit.
+    ///
+    /// `kuka-abc/angles/deg/mm`, and behind it `/inverse` and `/tcp=x:y:z:qw:qx:qy:qz` (mm) where that is so.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let named = |names: &[&'static str], idx: usize| names.get(idx).copied().unwrap_or_default();
+        let mut text = format!(
+            "{}/{}/{}/{}",
+            self.convention.id,
+            named(&FORM_NAMES, self.orientation as usize),
+            named(&ANGLE_UNIT_NAMES, self.angle_unit as usize),
+            self.length_unit.symbol()
+        );
+        if self.is_inverse {
+            text.push_str("/inverse");
+        }
+        if let Some(flange_from_tcp) = &self.flange_from_tcp {
+            let translation = flange_from_tcp.translation_mm();
+            let numbers = translation.iter().copied().chain(flange_from_tcp.quaternion_wxyz());
+            let numbers: Vec<String> = numbers.map(|number| number.to_string()).collect();
+            text.push_str("/tcp=");
+            text.push_str(&numbers.join(":"));
+        }
+        text
+    }
+
+    /// The notation of such a word; `None` if it is none, or of a convention that is not known.
+    #[must_use]
+    pub fn from_text(text: &str) -> Option<Self> {
+        let mut words = text.trim().split('/');
+        let convention = PoseConvention::by_id(words.next()?)?;
+        let form = words.next()?;
+        let angle_unit = words.next()?;
+        let length_unit = words.next()?;
+        let mut notation = Self {
+            orientation: [OrientationForm::Angles, OrientationForm::QuaternionWxyz, OrientationForm::QuaternionXyzw]
+                .into_iter()
+                .zip(FORM_NAMES)
+                .find_map(|(known, name)| (name == form).then_some(known))?,
+            angle_unit: [AngleUnit::Degrees, AngleUnit::Radians]
+                .into_iter()
+                .zip(ANGLE_UNIT_NAMES)
+                .find_map(|(known, name)| (name == angle_unit).then_some(known))?,
+            length_unit: [LengthUnit::Millimetres, LengthUnit::Metres]
+                .into_iter()
+                .find(|unit| unit.symbol() == length_unit)?,
+            ..Self::of(convention)
+        };
+        for word in words {
+            if word == "inverse" {
+                notation.is_inverse = true;
+            } else {
+                let numbers: Vec<f64> =
+                    word.strip_prefix("tcp=")?.split(':').map(|number| number.parse().ok()).collect::<Option<_>>()?;
+                let [x, y, z, w, i, j, k] = numbers.try_into().ok()?;
+                let is_finite = [x, y, z].iter().all(|value: &f64| value.is_finite());
+                let rotation = unit_quaternion([w, i, j, k]).ok().filter(|_| is_finite)?;
+                notation.flange_from_tcp = Some(Transform::from_parts(Vec3::new(x, y, z), rotation));
+            }
+        }
+        Some(notation)
     }
 
     /// The pose that the numbers stand for.

@@ -84,12 +84,17 @@ impl RoughPlate {
             of_edge.map(|seen| seen.point(0, mount).in_base(&flange_from_sensor)).collect()
         };
         let [on_p, on_q] = [Edge::P, Edge::Q].map(places);
-        let base_from_plate = match (on_p.as_slice(), on_q.as_slice()) {
-            ([one, .., other], [third, ..]) => plate_at(*one, *other, *third, Edge::P),
-            ([third, ..], [one, .., other]) => plate_at(*one, *other, *third, Edge::Q),
-            _ => None,
-        }
-        .ok_or(PlanRefusal::PlateUnseen)?;
+        // What is off in the mounting turns a direction the less, the further apart its two points are.
+        let of_pairs =
+            [(Edge::P, &on_p, &on_q), (Edge::Q, &on_q, &on_p)].into_iter().filter_map(|(edge, on, others)| {
+                let pair = furthest_apart(on)?;
+                Some((edge, pair, *others.first()?))
+            });
+        let apart_mm = |[one, other]: [Vec3; 2]| (other - one).norm();
+        let base_from_plate = of_pairs
+            .max_by(|(_, a, _), (_, b, _)| apart_mm(*a).total_cmp(&apart_mm(*b)))
+            .and_then(|(edge, [one, other], third)| plate_at(one, other, third, edge))
+            .ok_or(PlanRefusal::PlateUnseen)?;
         let of_edge = |places: &[Vec3], edge: Edge| -> Vec<f64> {
             let in_plate = |place: &Vec3| base_from_plate.inverse_transform_point(&(*place).into()).coords;
             places.iter().map(|place| in_plate(place)[along(edge)]).collect()
@@ -108,6 +113,12 @@ impl RoughPlate {
     fn state(&self) -> PlateState {
         PlateState { flange_from_sensor: self.flange_from_sensor, base_from_plate: self.base_from_plate }
     }
+}
+
+/// The two places that are furthest from each other; `None` of a single one.
+fn furthest_apart(places: &[Vec3]) -> Option<[Vec3; 2]> {
+    let pairs = places.iter().enumerate().flat_map(|(idx, one)| places[idx + 1..].iter().map(|other| [*one, *other]));
+    pairs.max_by(|[a, b], [c, d]| (a - b).norm().total_cmp(&(c - d).norm()))
 }
 
 /// The plate with two places on one edge and a third on the other; `None` if they are on one line. Its axes point to them.

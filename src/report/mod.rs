@@ -11,6 +11,7 @@ mod diagnosis_entry;
 pub mod diagnosis_lines;
 pub mod document;
 pub mod evidence;
+pub mod figure;
 pub mod files;
 pub mod html;
 pub mod judgement;

@@ -84,9 +84,12 @@ pub fn poses_csv(session: &Session, notation: &PoseNotation, style: TableStyle) 
         .map(str::to_owned)
         .chain(position)
         .chain(orientation)
-        .chain(["point_x_mm", "point_y_mm", "point_z_mm", "profile"].map(str::to_owned))
+        .chain(["point_x_mm", "point_y_mm", "point_z_mm", "profile", "notation"].map(str::to_owned))
         .collect();
+    // In every row, as people sort and cut tables.
+    let notation_text = notation.text();
     let rows = session.stations.iter().enumerate().flat_map(|(station_idx, station)| {
+        let notation_text = &notation_text;
         station.captures.iter().enumerate().map(move |(capture_idx, capture)| {
             let side = match station.side {
                 SideChoice::Auto => "auto",
@@ -110,6 +113,7 @@ pub fn poses_csv(session: &Session, notation: &PoseNotation, style: TableStyle) 
                     row.push(if profile.is_empty() { String::new() } else { profile_file_name(place) });
                 }
             }
+            row.push(notation_text.clone());
             row
         })
     });

@@ -4,5 +4,6 @@
 
 pub mod digits;
 mod en;
+pub mod typeset;
 
 pub use en::*;

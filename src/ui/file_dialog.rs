@@ -50,8 +50,8 @@ pub enum Purpose {
 }
 
 /// Files of poses and profiles by their endings.
-const IMPORT_ENDINGS: [&str; 12] =
-    ["csv", "tsv", "txt", "ls", "mod", "src", "dat", "script", "urscript", "yaml", "yml", "json"];
+const IMPORT_ENDINGS: [&str; 14] =
+    ["csv", "tsv", "txt", "ls", "mod", "src", "dat", "script", "urscript", "yaml", "yml", "json", "mcap", "db3"];
 
 impl Purpose {
     /// The heading where a path is typed for it.

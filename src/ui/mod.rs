@@ -11,7 +11,6 @@ pub mod cloud;
 pub mod compare;
 pub mod diagnosis;
 pub mod dialogs;
-pub mod figures;
 pub mod file_dialog;
 pub mod history;
 pub mod import;

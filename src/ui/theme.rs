@@ -12,6 +12,10 @@ use egui::{
 use egui_plot::MarkerShape;
 
 use crate::calibrate::{Method, Verdict};
+use crate::report::figure::palette::{self as data, Marker, Rgb};
+use crate::report::figure::typeface;
+
+pub use crate::report::figure::palette::method_symbol;
 
 /// Height of every row of a table or list, points.
 pub const ROW_HEIGHT: f32 = 24.0;
@@ -29,11 +33,29 @@ pub const BODY_SIZE: f32 = 13.0;
 pub const HEADING_SIZE: f32 = 18.0;
 
 /// Points on the arc: drawn solid.
-pub const INLIER: Color32 = Color32::from_rgb(0x00, 0x72, 0xb2);
+pub const INLIER: Color32 = color_of(data::INLIER);
 /// Points off the arc: drawn hollow.
-pub const OUTLIER: Color32 = Color32::from_rgb(0xd0, 0x39, 0x2b);
+pub const OUTLIER: Color32 = color_of(data::OUTLIER);
 /// Points elsewhere: drawn faint.
-pub const UNUSED: Color32 = Color32::from_rgb(0xb4, 0xbb, 0xc5);
+pub const UNUSED: Color32 = color_of(data::UNUSED);
+
+/// A colour of data, on the screen.
+#[must_use]
+pub const fn color_of(Rgb(red, green, blue): Rgb) -> Color32 {
+    Color32::from_rgb(red, green, blue)
+}
+
+/// A marker of data, on the screen.
+#[must_use]
+pub const fn marker_shape(marker: Marker) -> MarkerShape {
+    match marker {
+        Marker::Circle => MarkerShape::Circle,
+        Marker::Down => MarkerShape::Down,
+        Marker::Up => MarkerShape::Up,
+        Marker::Square => MarkerShape::Square,
+        Marker::Diamond => MarkerShape::Diamond,
+    }
+}
 
 /// The colours of the axes x, y and z of a frame; letters stand beside them.
 #[must_use]
@@ -41,7 +63,7 @@ pub fn axis_colors(ui: &egui::Ui) -> [Color32; 3] {
     if ui.visuals().dark_mode {
         [Color32::from_rgb(0xf2, 0x7a, 0x6d), Color32::from_rgb(0x4f, 0xc4, 0x8a), Color32::from_rgb(0x6f, 0xa3, 0xff)]
     } else {
-        [Color32::from_rgb(0xc2, 0x2f, 0x22), Color32::from_rgb(0x0f, 0x86, 0x4e), Color32::from_rgb(0x1f, 0x5f, 0xe0)]
+        data::AXES.map(color_of)
     }
 }
 
@@ -116,16 +138,10 @@ pub fn palette(ui: &egui::Ui) -> &'static Palette {
     palette_of(ui.visuals())
 }
 
-/// The colour that a method has everywhere, safe for colour-blind eyes (Okabe–Ito).
+/// The colour that a method has everywhere.
 #[must_use]
 pub const fn method_color(method: Method) -> Color32 {
-    match method {
-        Method::BallFixedPoint | Method::FixedPoint => Color32::from_rgb(0x00, 0x72, 0xb2),
-        Method::BallMaxArcStep => Color32::from_rgb(0x7f, 0x7f, 0x7f),
-        Method::BallMaxArc => Color32::from_rgb(0xd9, 0x7a, 0x00),
-        Method::BallBundle | Method::PlateBundle => Color32::from_rgb(0x00, 0x9e, 0x73),
-        Method::PlateOrthogonal => Color32::from_rgb(0xcc, 0x79, 0xa7),
-    }
+    color_of(data::method_color(method))
 }
 
 /// A shade of the method's colour with enough contrast for text: darker on a light ground, lighter on a dark one.
@@ -146,25 +162,7 @@ pub fn method_text_color(ui: &egui::Ui, method: Method) -> Color32 {
 /// The marker that a method has in every plot.
 #[must_use]
 pub const fn method_marker(method: Method) -> MarkerShape {
-    match method {
-        Method::BallFixedPoint | Method::FixedPoint => MarkerShape::Circle,
-        Method::BallMaxArcStep => MarkerShape::Down,
-        Method::BallMaxArc => MarkerShape::Up,
-        Method::BallBundle | Method::PlateBundle => MarkerShape::Square,
-        Method::PlateOrthogonal => MarkerShape::Diamond,
-    }
-}
-
-/// The same marker as a character, for table heads.
-#[must_use]
-pub const fn method_symbol(method: Method) -> &'static str {
-    match method {
-        Method::BallFixedPoint | Method::FixedPoint => "●",
-        Method::BallMaxArcStep => "▽",
-        Method::BallMaxArc => "▲",
-        Method::BallBundle | Method::PlateBundle => "■",
-        Method::PlateOrthogonal => "◆",
-    }
+    marker_shape(data::method_marker(method))
 }
 
 /// The colour of a verdict in a palette; the shape from [`crate::text::verdict_mark`] stands beside it.
@@ -224,13 +222,9 @@ pub fn install(ctx: &egui::Context) {
     }
 }
 
-/// Inter, subset and with tabular figures as its only figures; see `assets/fonts/subset.py`.
-const REGULAR: &[u8] = include_bytes!("../../assets/fonts/Inter-Regular.ttf");
-const SEMIBOLD: &[u8] = include_bytes!("../../assets/fonts/Inter-SemiBold.ttf");
-
 fn fonts() -> FontDefinitions {
     let mut fonts = FontDefinitions::default();
-    for (name, bytes) in [("Inter", REGULAR), ("Inter SemiBold", SEMIBOLD)] {
+    for (name, bytes) in [("Inter", typeface::REGULAR), ("Inter SemiBold", typeface::SEMIBOLD)] {
         fonts.font_data.insert(name.to_owned(), Arc::new(FontData::from_static(bytes)));
     }
     // Ticks, folding triangles and emoji stand in none of the first, so the others back it up.

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Holds the simulated cell and the exported tool frames against programs that others wrote.
+"""Holds the simulated cell, the exported tool frames and the import of ROS 2 bags against programs that others wrote.
 
     python3 tests/clients/run.py target/debug/handeye [FOLDER]
 
 Makes a virtual environment in FOLDER (a temporary one if none is named), installs the clients of requirements.txt there,
-starts `handeye cell` for each protocol, runs checks.py, and runs tool_frames.py. Ends with 0 if all is well, 1 if a check failed or a cell did not
+starts `handeye cell` for each protocol, runs checks.py, and runs tool_frames.py and ros_bags.py. Ends with 0 if all is well, 1 if a check failed or a cell did not
 start, and 3 with lines "skipped: ..." if something could not be checked: no clients, or no free ports.
 """
 
@@ -120,10 +120,9 @@ def check(python, program, robot, sensor, names, offsets=OFFSETS):
         return None
 
 
-def check_tool_frames(python, program):
-    """Holds exported tool frames against the conventions of another program."""
-    script = str(HERE / "tool_frames.py")
-    done = subprocess.run([str(python), script, program], timeout=CHECK_TIMEOUT_S, check=False)
+def check_with(script, python, program):
+    """Runs a script that needs no cell."""
+    done = subprocess.run([str(python), str(HERE / script), program], timeout=CHECK_TIMEOUT_S, check=False)
     return done.returncode == 0
 
 
@@ -143,7 +142,8 @@ def main():
             check(python, program, "mappdk", "ljv", ["fanucpy", "fanuc-python", "fanuc-logger", "ljv"]),
             # The receiving half of ur_rtde knows one port only.
             check(python, program, "ur", "ljv", ["ur-receive", "ur-dashboard", "ur-script"], offsets=[0]),
-            check_tool_frames(python, program),
+            check_with("tool_frames.py", python, program),
+            check_with("ros_bags.py", python, program),
         ]
     if False in outcomes:
         return 1

@@ -80,7 +80,7 @@ impl Workbench {
 
     pub(super) fn start_import_of_text(&mut self, text: String) {
         self.forget_errors();
-        self.imports.begin(vec![Source { name: words::PASTED.to_owned(), text }]);
+        self.imports.begin(vec![Source::from_text(words::PASTED, text)]);
         self.read_import();
     }
 

@@ -4,6 +4,9 @@
 //! A cone's section is as much lower as it is beside the tip, on either side and however the sensor is tilted: its flanks are
 //! straight, so a few heights on each are enough. They are taken near the tip: further down the shaft begins, and falls
 //! differently. What is seen beside a tip is no tip, so only the last profile is kept.
+//!
+//! Tilted, the flank that turns away from the camera is seen for a fraction of a millimetre or not at all: then the tip is where
+//! the section vanishes.
 
 use thiserror::Error;
 
@@ -13,7 +16,7 @@ use crate::geometry::stats::median;
 
 use super::settings::{SearchSettings, SettingsRefusal};
 
-/// Heights on each flank, and the fewest that will do on a narrow one.
+/// Heights on each flank, and the fewest on the one that is seen well.
 const NUM_ON_FLANK: u8 = 4;
 const FEWEST_ON_FLANK: usize = 2;
 /// They are this part of a step apart.
@@ -122,9 +125,6 @@ impl TipSearch {
             return TipNext::LookAt(place_mm);
         }
         let no_peak = TipNext::Over(TipEnd::NoPeak { at_mm: highest.commanded_mm });
-        if wanted.iter().any(|wanted| !matches!(wanted, Wanted::Nothing)) {
-            return no_peak;
-        }
         self.meeting_mm(&highest).map_or(no_peak, TipNext::KeepAt)
     }
 
@@ -178,8 +178,10 @@ impl TipSearch {
         let furthest_mm = flank.last().map_or(0.0, |[distance_mm, _]| *distance_mm);
         let lost = self.looks.iter().filter(|look| look.height_mm.is_none()).map(distance);
         let lost_mm = lost.filter(|distance_mm| *distance_mm > furthest_mm).fold(f64::INFINITY, f64::min);
+        // Nothing may have been seen nearer than where something is.
         let is_open = |distance_mm: &f64| {
-            *distance_mm < lost_mm - FINEST_MM && flank.iter().all(|seen| (seen[0] - distance_mm).abs() > FINEST_MM)
+            *distance_mm < lost_mm - FINEST_MM
+                && self.looks.iter().all(|look| (distance(look) - distance_mm).abs() > FINEST_MM)
         };
         let mut usual = (1..=NUM_ON_FLANK).map(|idx| f64::from(idx) * self.apart_mm());
         if let Some(next_mm) = usual.find(is_open) {
@@ -191,28 +193,36 @@ impl TipSearch {
         let widest = ends.windows(2).max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
         match widest {
             Some(gap) if gap[1] - gap[0] >= 2.0 * FINEST_MM => Wanted::Between(place_mm(f64::midpoint(gap[0], gap[1]))),
-            _ if flank.len() >= FEWEST_ON_FLANK => Wanted::Nothing,
-            _ => Wanted::TooNarrow,
+            _ => Wanted::Nothing,
         }
     }
 
-    /// Where the lines through both flanks meet, mm; `None` if they do not fall away from there.
+    /// Where the lines through both flanks meet, mm, or where the section vanishes; `None` if they do not fall away from
+    /// there.
     fn meeting_mm(&self, highest: &Look) -> Option<f64> {
-        let line = |side: f64| {
-            let flank: Vec<[f64; 2]> = self
-                .flank(side, highest)
-                .into_iter()
-                .map(|[distance_mm, height_mm]| [side * distance_mm, height_mm])
-                .collect();
-            line_through(&flank).filter(|[_, slope]| side * slope < 0.0)
+        let flanks = [-1.0, 1.0].map(|side| (side, self.flank(side, highest)));
+        if flanks.iter().all(|(_, flank)| flank.len() < FEWEST_ON_FLANK) {
+            return None;
+        }
+        let line = |(side, flank): &(f64, Vec<[f64; 2]>)| {
+            // A single height beside the highest falls away from that.
+            let from_highest = (flank.len() == 1).then_some([0.0, highest.height_mm?]);
+            let places = flank.iter().copied().chain(from_highest);
+            let places: Vec<[f64; 2]> =
+                places.map(|[distance_mm, height_mm]| [side * distance_mm, height_mm]).collect();
+            line_through(&places).filter(|[_, slope]| side * slope < 0.0)
         };
-        let [rising, falling] = [line(-1.0)?, line(1.0)?];
+        if flanks.iter().any(|(_, flank)| flank.is_empty()) {
+            // It still has to fall on the side where it is seen.
+            return flanks.iter().find_map(line).map(|_| highest.commanded_mm);
+        }
+        let [rising, falling] = [line(&flanks[0])?, line(&flanks[1])?];
         let offset_mm = (falling[0] - rising[0]) / (rising[1] - falling[1]);
-        let nearest = |side: f64| {
-            let neighbour_mm = self.flank(side, highest).first().map_or(0.0, |[distance_mm, _]| *distance_mm);
-            neighbour_mm.max(BESIDE_HIGHEST_MM)
+        let nearest_mm = |(_, flank): &(f64, Vec<[f64; 2]>)| {
+            flank.first().map_or(0.0, |[distance_mm, _]| *distance_mm).max(BESIDE_HIGHEST_MM)
         };
-        (-nearest(-1.0)..=nearest(1.0)).contains(&offset_mm).then_some(highest.commanded_mm + offset_mm)
+        let allowed_mm = -nearest_mm(&flanks[0])..=nearest_mm(&flanks[1]);
+        allowed_mm.contains(&offset_mm).then_some(highest.commanded_mm + offset_mm)
     }
 }
 
@@ -223,7 +233,6 @@ enum Wanted {
     Beyond(f64),
     /// A height between those that are there.
     Between(f64),
-    TooNarrow,
 }
 
 /// Height at 0 and slope of the line through some places.
@@ -261,9 +270,12 @@ fn height_over_background_mm(profile: &Profile) -> Option<f64> {
         return None;
     }
     let background = median(&mut ranges.clone());
+    // Strays stand out as well, but here and there.
     let standing_out = |sign: f64| -> Vec<f64> {
-        let over = ranges.iter().map(|z| sign * (z - background)).filter(|over_mm| *over_mm > STANDS_OUT_MM);
-        over.collect()
+        let over: Vec<f64> = ranges.iter().map(|z| sign * (z - background)).collect();
+        let runs = over.chunk_by(|one, next| (*one > STANDS_OUT_MM) == (*next > STANDS_OUT_MM));
+        let of_thing = runs.filter(|run| run.iter().all(|over_mm| *over_mm > STANDS_OUT_MM));
+        of_thing.max_by_key(|run| run.len()).map(<[f64]>::to_vec).unwrap_or_default()
     };
     // z may run either way.
     let [nearer, further] = [-1.0, 1.0].map(|sign| (sign, standing_out(sign)));
@@ -285,14 +297,15 @@ fn top_mm(mut heights: Vec<f64>) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// A cone that is seen up to so far beside its tip, and falls differently on its sides.
-    fn search(tip_mm: f64, reach_mm: f64, slopes: [f64; 2], noise_mm: f64) -> (TipNext, usize) {
+    /// A cone that is seen up to so far on the sides of its tip, and falls differently there.
+    fn search(tip_mm: f64, reaches_mm: [f64; 2], slopes: [f64; 2], noise_mm: f64) -> (TipNext, usize) {
         let mut search = TipSearch::new(&SearchSettings::default());
         for count in 0..200_u32 {
             match search.next() {
                 TipNext::LookAt(place_mm) => {
                     let off_mm = place_mm - tip_mm;
-                    let slope = if off_mm < 0.0 { slopes[0] } else { slopes[1] };
+                    let side = usize::from(off_mm >= 0.0);
+                    let (slope, reach_mm) = (slopes[side], reaches_mm[side]);
                     let noise_mm = noise_mm * f64::from(i16::try_from(count * 7 % 5).expect("small") - 2) / 2.0;
                     let height_mm = (off_mm.abs() < reach_mm).then(|| 10.0 - slope * off_mm.abs() + noise_mm);
                     search.take(place_mm, height_mm);
@@ -308,7 +321,7 @@ mod tests {
         for tip_mm in [0.0, 0.37, -1.6, 5.3, -14.2] {
             for reach_mm in [0.8, 2.0, 30.0] {
                 for slopes in [[1.2, 1.2], [2.5, 0.6]] {
-                    let (end, num_looks) = search(tip_mm, reach_mm, slopes, 0.005);
+                    let (end, num_looks) = search(tip_mm, [reach_mm; 2], slopes, 0.005);
                     let TipNext::KeepAt(found_mm) = end else {
                         assert!(reach_mm < 1.0, "{tip_mm} {reach_mm}: {end:?}");
                         continue;
@@ -323,11 +336,33 @@ mod tests {
     }
 
     #[test]
+    fn a_flank_that_is_hidden_leaves_the_tip_where_the_section_vanishes() {
+        for tip_mm in [0.0, 0.11, -0.4, 2.3] {
+            for reaches_mm in [[0.0, 3.0], [0.25, 3.0], [3.0, 0.15], [3.0, 0.0]] {
+                let (end, _) = search(tip_mm, reaches_mm, [0.8; 2], 0.005);
+                let TipNext::KeepAt(found_mm) = end else { panic!("{tip_mm} {reaches_mm:?}: {end:?}") };
+                // Between what is seen and what is not it is looked at twice as closely as this at most.
+                assert!((found_mm - tip_mm).abs() < 2.0 * FINEST_MM, "{tip_mm} {reaches_mm:?}: {found_mm}");
+            }
+        }
+    }
+
+    #[test]
+    fn strays_are_nothing_that_sticks_out() {
+        let z_mm = |idx: u32| if idx % 9 == 4 { 40.0 } else { 80.0 };
+        let (x_mm, mut z_mm): (Vec<f64>, Vec<f64>) = (0..100).map(|idx| (0.1 * f64::from(idx), z_mm(idx))).unzip();
+        let height = |z_mm: &[f64]| height_mm(&Profile::new(x_mm.clone(), z_mm.to_vec()).expect("as long"), None);
+        assert_eq!(height(&z_mm), None);
+        z_mm[50..58].fill(70.0);
+        assert_eq!(height(&z_mm), Some(-70.0));
+    }
+
+    #[test]
     fn what_is_no_tip_is_told() {
         let settings = SearchSettings::default();
-        let far = search(60.0, 2.0, [1.2; 2], 0.0).0;
+        let far = search(60.0, [2.0; 2], [1.2; 2], 0.0).0;
         assert_eq!(far, TipNext::Over(TipEnd::NotMet { max_travel_mm: settings.max_travel_mm }));
-        let level = search(0.0, 100.0, [0.0; 2], 0.0).0;
+        let level = search(0.0, [100.0; 2], [0.0; 2], 0.0).0;
         assert!(matches!(level, TipNext::Over(TipEnd::NoPeak { .. } | TipEnd::CapturesExhausted { .. })), "{level:?}");
         let nowhere = SearchSettings { direction: [0.0; 3], ..settings };
         assert!(matches!(TipSearch::new(&nowhere).next(), TipNext::Over(TipEnd::NotBegun(_))));

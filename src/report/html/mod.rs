@@ -152,7 +152,7 @@ fn write_table(out: &mut String, table: &Table) {
     if table.rows.len() < KEPT_TOGETHER_BELOW {
         classes.push("together");
     }
-    writeln!(out, "<table class=\"{}\">\n<caption>{}</caption>", classes.join(" "), escaped(&table.title)).ok();
+    writeln!(out, "<div class=\"table\">\n<table class=\"{}\">\n<caption>{}</caption>", classes.join(" "), escaped(&table.title)).ok();
     out.push_str("<thead>\n");
     write_groups(out, &table.columns);
     out.push_str("<tr>");
@@ -175,6 +175,7 @@ fn write_table(out: &mut String, table: &Table) {
     if let Some(note) = &table.note {
         writeln!(out, "<p class=\"note\">{}</p>", escaped(note)).ok();
     }
+    out.push_str("</div>\n");
 }
 
 /// The row of headings that several columns share.

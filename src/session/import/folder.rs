@@ -2,10 +2,11 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use crate::sheet::natural_key;
 
-use super::{ImportError, Source};
+use super::{Bag, Content, ImportError, Source, bag};
 
 /// No file of poses or of a profile is as large.
 pub const MAX_FILE_BYTES: u64 = 64 << 20;
@@ -38,8 +39,12 @@ pub(super) fn read_paths(paths: &[PathBuf]) -> Result<Vec<Source>, ImportError> 
             files.push((path.clone(), name));
         }
     }
+    let (files, bags) = split_bags(files)?;
     let mut total = 0;
-    let mut sources = Vec::with_capacity(files.len());
+    let mut sources = Vec::with_capacity(files.len() + bags.len());
+    for (name, files) in bags {
+        sources.push(Source { name, content: Content::Bag(Arc::new(Bag::open(&files)?)) });
+    }
     for (path, name) in files {
         let metadata = fs::metadata(&path).map_err(|error| unreadable(&path, &error))?;
         let file = path.display().to_string();
@@ -56,6 +61,35 @@ pub(super) fn read_paths(paths: &[PathBuf]) -> Result<Vec<Source>, ImportError> 
         sources.push(Source::from_bytes(name, bytes));
     }
     Ok(sources)
+}
+
+/// Files, and how messages name them.
+type Named = Vec<(PathBuf, String)>;
+/// Bags with their names and files.
+type Bags = Vec<(String, Vec<PathBuf>)>;
+
+/// Takes the bags out of a list of files: those beside one `metadata.yaml` are one recording, which is named as its folder.
+fn split_bags(files: Named) -> Result<(Named, Bags), ImportError> {
+    const METADATA: &str = "metadata.yaml";
+    let mut bags: Vec<(PathBuf, String, Vec<PathBuf>)> = Vec::new();
+    let mut others = Vec::with_capacity(files.len());
+    for (path, name) in files {
+        if !path.is_file() || !bag::is_bag(&path)? {
+            others.push((path, name));
+            continue;
+        }
+        let folder = path.parent().filter(|folder| folder.join(METADATA).is_file()).map(Path::to_path_buf);
+        if let Some((_, _, files)) = bags.iter_mut().find(|(known, _, _)| folder.as_ref() == Some(known)) {
+            files.push(path);
+        } else {
+            let folder_name = folder.as_deref().and_then(Path::file_name);
+            let name = folder_name.map_or(name, |folder| folder.to_string_lossy().into_owned());
+            bags.push((folder.unwrap_or_else(|| path.clone()), name, vec![path]));
+        }
+    }
+    let is_metadata = |path: &Path| path.ends_with(METADATA) && bags.iter().any(|bag| path.parent() == Some(&bag.0));
+    others.retain(|(path, _)| !is_metadata(path));
+    Ok((others, bags.into_iter().map(|(_, name, files)| (name, files)).collect()))
 }
 
 /// The files of a folder and of those in it, numbers in their names in their order.

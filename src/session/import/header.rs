@@ -96,6 +96,7 @@ fn words(name: &str) -> Vec<Word> {
         "edge" => Some(Role::Edge),
         "use" | "used" | "enabled" | "enable" | "active" => Some(Role::Used),
         "step" => Some(Role::Step),
+        "notation" => Some(Role::Notation),
         "profile" | "file" | "filename" | "scan" | "profilefile" => Some(Role::Profile),
         _ => None,
     };
@@ -105,8 +106,13 @@ fn words(name: &str) -> Vec<Word> {
 
 /// The roles of the columns that a header names, and what else it says; `None` for the cells that it does not explain.
 ///
-/// `convention` settles what several makers name alike.
-pub(super) fn roles(cells: &[&str], convention: &'static PoseConvention) -> (Vec<Option<Role>>, Said) {
+/// `convention` settles what several makers name alike; where the table itself says that its angles are of a maker, `written`,
+/// they are the columns with that maker's names, in that order.
+pub(super) fn roles(
+    cells: &[&str],
+    convention: &'static PoseConvention,
+    written: Option<&'static PoseConvention>,
+) -> (Vec<Option<Role>>, Said) {
     let named: Vec<(Vec<Word>, Option<String>)> = cells
         .iter()
         .map(|cell| {
@@ -142,7 +148,19 @@ pub(super) fn roles(cells: &[&str], convention: &'static PoseConvention) -> (Vec
         |first: usize, word: fn(usize) -> Word| [0, 1, 2, 3].map(|idx| (word(first + idx), Role::Orientation(idx)));
     let quaternions = [quaternion(0, Word::Quaternion), quaternion(0, Word::Numbered), quaternion(1, Word::Numbered)];
     let mut angles = None;
-    if let Some(columns) = quaternions.iter().find_map(|block| take(&mut roles, block)) {
+    if let Some(written) = written {
+        let names = written.angle_names.map(|name| name_and_unit(name).0);
+        let is_named =
+            |column: &usize, name: &String| roles[*column].is_none() && name_and_unit(cells[*column]).0 == *name;
+        let columns: Option<Vec<usize>> =
+            names.iter().map(|name| (0..cells.len()).find(|column| is_named(column, name))).collect();
+        for (idx, column) in columns.iter().flatten().enumerate() {
+            roles[*column] = Some(Role::Orientation(idx));
+        }
+        said.orientation = columns.as_ref().map(|_| OrientationForm::Angles);
+        said.convention = Some(written);
+        angles = columns;
+    } else if let Some(columns) = quaternions.iter().find_map(|block| take(&mut roles, block)) {
         let is_real_part_last = columns[0] > columns[3];
         said.orientation =
             Some(if is_real_part_last { OrientationForm::QuaternionXyzw } else { OrientationForm::QuaternionWxyz });
@@ -201,7 +219,7 @@ mod tests {
     #[track_caller]
     fn check(header: &str, expected: &str, said: &str) {
         let cells: Vec<&str> = header.split(',').collect();
-        let (roles, found) = roles(&cells, PoseConvention::default_convention());
+        let (roles, found) = roles(&cells, PoseConvention::default_convention(), None);
         let letters: String = roles
             .iter()
             .map(|role| match role {
@@ -216,6 +234,7 @@ mod tests {
                 Some(Role::Used) => "U".to_owned(),
                 Some(Role::Step) => "T".to_owned(),
                 Some(Role::Profile) => "F".to_owned(),
+                Some(Role::Notation) => "N".to_owned(),
             })
             .collect();
         let words = format!(
@@ -254,8 +273,8 @@ mod tests {
             "? ? xyzw ?",
         );
         check(
-            "label,capture,side,enabled,step_mm,x_mm,y_mm,z_mm,W_deg,P_deg,R_deg",
-            "L?SUTt0t1t2o0o1o2",
+            "label,capture,side,enabled,step_mm,x_mm,y_mm,z_mm,W_deg,P_deg,R_deg,notation",
+            "L?SUTt0t1t2o0o1o2N",
             "mm ° angles fanuc-wpr",
         );
         check("x,z", "??", "? ? ? ?");

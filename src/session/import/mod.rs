@@ -4,6 +4,7 @@
 //! dropped silently: what could not be read is listed with file, line and column.
 
 mod abb;
+pub mod bag;
 mod fanuc;
 mod folder;
 mod gather;
@@ -21,6 +22,7 @@ mod ur;
 mod yaml;
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use thiserror::Error;
 
@@ -31,23 +33,57 @@ use crate::sheet::text::decode;
 use crate::watch::{Cancelled, Watch};
 
 pub use crate::sheet::Separator;
+pub use bag::{Bag, BagOptions, BagReport};
 pub use folder::{MAX_FILE_BYTES, MAX_FILES, MAX_TOTAL_BYTES};
 pub use gather::MAX_POSES;
 
-/// A file, or a pasted text, in memory.
+/// A file, a pasted text, or a bag.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Source {
     /// As messages name it.
     pub name: String,
-    /// Its text.
-    pub text: String,
+    /// What is read.
+    pub content: Content,
+}
+
+/// What a source holds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Content {
+    /// A text in memory.
+    Text(String),
+    /// Recorded messages, which stay in their files until they are read.
+    Bag(Arc<Bag>),
 }
 
 impl Source {
     /// From the bytes of a file, in whatever encoding they are.
     #[must_use]
     pub fn from_bytes(name: String, bytes: Vec<u8>) -> Self {
-        Self { name, text: decode(bytes) }
+        Self::from_text(name, decode(bytes))
+    }
+
+    /// From a text.
+    #[must_use]
+    pub fn from_text(name: impl Into<String>, text: impl Into<String>) -> Self {
+        Self { name: name.into(), content: Content::Text(text.into()) }
+    }
+
+    /// Its text; a bag has none.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        match &self.content {
+            Content::Text(text) => text,
+            Content::Bag(_) => "",
+        }
+    }
+
+    /// The bag, if it is one.
+    #[must_use]
+    pub fn bag(&self) -> Option<&Bag> {
+        match &self.content {
+            Content::Text(_) => None,
+            Content::Bag(bag) => Some(bag),
+        }
     }
 }
 
@@ -74,6 +110,8 @@ pub enum Kind {
     ProfileColumns,
     /// YAML with lists of points, and perhaps poses.
     Yaml,
+    /// Messages that ROS 2 has recorded.
+    RosBag,
 }
 
 /// What a column of a table means.
@@ -99,6 +137,8 @@ pub enum Role {
     Step,
     /// Name or number of the profile that belongs to the pose.
     Profile,
+    /// How the poses are written, as [`PoseNotation::text`] has it; the first row's counts for all.
+    Notation,
 }
 
 /// What can be set in the preview; `None` is left to recognition.
@@ -122,6 +162,8 @@ pub struct ImportOptions {
     pub profile_length_unit: Option<crate::geometry::notation::LengthUnit>,
     /// Whether z of the profiles points the other way.
     pub is_z_mirrored: bool,
+    /// How messages of a bag become captures.
+    pub bag: BagOptions,
 }
 
 impl ImportOptions {
@@ -229,6 +271,8 @@ pub enum Note {
         /// How many.
         num_poses: usize,
     },
+    /// What became of the messages of a bag.
+    Bag(Box<BagReport>),
 }
 
 /// What was read.
@@ -289,6 +333,9 @@ pub enum ImportError {
     /// Every row had a problem; this is the first.
     #[error("{0}")]
     NothingLeft(Problem),
+    /// A bag that cannot be read.
+    #[error(transparent)]
+    Bag(#[from] bag::BagError),
     /// A session file that cannot be opened.
     #[error(transparent)]
     Session(#[from] crate::session::SessionError),
@@ -324,10 +371,11 @@ impl From<Cancelled> for ImportError {
 /// Reads files, and the files of folders, into memory: at most [`MAX_FILE_BYTES`] a file.
 ///
 /// Files of a folder are named by their path in it. Hidden files and those that are certainly something else (pictures,
-/// archives) are passed over.
+/// archives) are passed over. Of ROS 2 bags, which may be of any size, only the topics are listed; the files of one recording
+/// are one source.
 ///
 /// # Errors
-/// [`ImportError::Unreadable`], [`ImportError::TooLarge`].
+/// [`ImportError::Unreadable`], [`ImportError::TooLarge`], [`ImportError::Bag`].
 pub fn read_paths(paths: &[PathBuf]) -> Result<Vec<Source>, ImportError> {
     folder::read_paths(paths)
 }

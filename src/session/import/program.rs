@@ -10,7 +10,7 @@ use super::gather::Gathered;
 use super::{Note, Preview, Role};
 
 /// Rows of the preview.
-const MAX_PREVIEW_ROWS: usize = 50;
+pub(super) const MAX_PREVIEW_ROWS: usize = 50;
 
 /// What a program says beside its poses, before any pose is converted.
 #[derive(Clone, Copy, Debug, Default)]

@@ -11,8 +11,8 @@ use super::gather::Gathered;
 use super::profiles::{self, NamedProfile};
 use super::recognise::{Recognised, recognise};
 use super::{
-    ImportError, ImportOptions, Imported, Kind, Note, Part, Preview, Source, abb, fanuc, kuka, matching, printed,
-    table, ur,
+    Bag, ImportError, ImportOptions, Imported, Kind, Note, Part, Preview, Source, abb, bag, fanuc, kuka, matching,
+    printed, table, ur,
 };
 
 /// How far the import is, for those who wait for it.
@@ -48,6 +48,7 @@ pub(super) fn read(
         base_from_user_frame: options.base_from_user_frame,
         profile_length_unit: options.profile_length_unit,
         is_z_mirrored: options.is_z_mirrored,
+        bag: options.bag.clone(),
         ..ImportOptions::default()
     };
     let main_idx = main_source(sources, notation);
@@ -56,7 +57,11 @@ pub(super) fn read(
         progress.tick()?;
         let is_main = idx == main_idx;
         let options = if is_main { options } else { &others };
-        let text = without_mark(&source.text);
+        if let Some(bag) = source.bag() {
+            reading.take_bag(source, bag, options, is_main, &mut progress)?;
+            continue;
+        }
+        let text = without_mark(source.text());
         match recognise(&source.name, text, options.kind, options, notation) {
             Some(recognised) => reading.take(source, text, recognised, options, is_main, &mut progress)?,
             None => reading.not_recognised.push(source.name.clone()),
@@ -72,8 +77,9 @@ fn main_source(sources: &[Source], notation: &PoseNotation) -> usize {
     }
     let options = ImportOptions::default();
     let has_poses = |source: &Source| {
-        let text = without_mark(&source.text);
-        recognise(&source.name, text, None, &options, notation).is_some_and(|recognised| recognised.has_poses())
+        let text = without_mark(source.text());
+        source.bag().is_some()
+            || recognise(&source.name, text, None, &options, notation).is_some_and(|recognised| recognised.has_poses())
     };
     sources.iter().position(has_poses).unwrap_or_default()
 }
@@ -190,19 +196,49 @@ impl<'o> Import<'o> {
                 preview.header.clone_from(layout.header.as_ref().unwrap_or(&Vec::new()));
             }
         }
-        let notation = filled.notation.filter(|_| self.gathered.num_poses() > poses_before);
+        let num_readings = self.profiles.len() + self.gathered.num_points() - readings_before;
+        self.end_part(source, kind, poses_before, num_readings, (filled, preview), is_main);
+        Ok(())
+    }
+
+    /// A bag gives poses together with their profiles.
+    fn take_bag(
+        &mut self,
+        source: &Source,
+        bag: &Bag,
+        options: &ImportOptions,
+        is_main: bool,
+        progress: &mut Progress<'_>,
+    ) -> Result<(), ImportError> {
+        self.gathered.begin_source(&source.name);
+        let poses_before = self.gathered.num_poses();
+        let mut preview = Preview::default();
+        let mut filled = ImportOptions { kind: Some(Kind::RosBag), ..options.clone() };
+        let (gathered, fallback) = (&mut self.gathered, self.fallback);
+        let report = bag::read(&source.name, bag, &mut filled, fallback, gathered, &mut preview, progress)?;
+        let num_readings = report.num_profiles;
+        gathered.notes.push(Note::Bag(Box::new(report)));
+        self.end_part(source, Kind::RosBag, poses_before, num_readings, (filled, preview), is_main);
+        Ok(())
+    }
+
+    /// Lists a source with what it gave; the preview is that of the first with poses.
+    fn end_part(
+        &mut self,
+        source: &Source,
+        kind: Kind,
+        poses_before: usize,
+        num_readings: usize,
+        (filled, preview): (ImportOptions, Preview),
+        is_main: bool,
+    ) {
+        let num_poses = self.gathered.num_poses() - poses_before;
+        let notation = filled.notation.filter(|_| num_poses > 0);
         if is_main {
             self.imported.options = filled;
             self.imported.preview = preview;
         }
-        self.imported.parts.push(Part {
-            name: source.name.clone(),
-            kind,
-            num_poses: self.gathered.num_poses() - poses_before,
-            num_readings: self.profiles.len() + self.gathered.num_points() - readings_before,
-            notation,
-        });
-        Ok(())
+        self.imported.parts.push(Part { name: source.name.clone(), kind, num_poses, num_readings, notation });
     }
 
     /// A session of ours: the first is the one, the stations of others are added to it.
@@ -226,7 +262,7 @@ impl<'o> Import<'o> {
         let Self { mut imported, mut gathered, profiles, has_profile_columns, not_recognised, .. } = self;
         let first_name = || sources.first().map(|source| source.name.clone()).unwrap_or_default();
         if imported.parts.is_empty() {
-            let text = sources.first().map_or("", |source| without_mark(&source.text).trim());
+            let text = sources.first().map_or("", |source| without_mark(source.text()).trim());
             let line = excerpt(text.lines().next().unwrap_or_default());
             let found = if line.is_empty() { "nothing".to_owned() } else { format!("\"{line}\"") };
             return Err(ImportError::NotRecognised { file: first_name(), found });

@@ -53,7 +53,7 @@ pub(super) fn recognise(
         Some(Kind::PrintedTable) => return printed::find(text).map(|tables| Recognised::Printed(Box::new(tables))),
         Some(kind @ (Kind::PoseTable | Kind::Profile | Kind::ProfileColumns)) => {
             let layout = layout(text, options.given())?;
-            let columns = table::columns(&layout, options, notation);
+            let columns = table::columns(text, &layout, options, notation);
             return Some(Recognised::Table(kind, Box::new(layout), columns));
         }
         Some(Kind::Yaml) => return yaml::document(text).map(|document| Recognised::Yaml(Box::new(document))),
@@ -78,7 +78,7 @@ pub(super) fn recognise(
         _ => layout(text, options.given()),
     };
     if let Some(layout) = layout {
-        let columns = table::columns(&layout, options, notation);
+        let columns = table::columns(text, &layout, options, notation);
         let kind = table_kind(&layout, &columns);
         return Some(Recognised::Table(kind, Box::new(layout), columns));
     }

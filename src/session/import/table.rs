@@ -25,16 +25,36 @@ pub(super) struct Columns {
     pub roles: Vec<Role>,
     pub said: Said,
     pub has_header: bool,
+    /// What the first row says of how the poses are written.
+    pub written: Option<Written>,
+}
+
+/// How poses are written, as a cell of the table says it.
+#[derive(Clone, Debug)]
+pub(super) struct Written {
+    /// Line and column of the cell, and its text.
+    at: (usize, usize),
+    text: String,
+    /// `None` if the text is not one of ours.
+    notation: Option<PoseNotation>,
 }
 
 /// What the columns mean: as the options say, as the header names them, or by number and values.
-pub(super) fn columns(layout: &Layout, options: &ImportOptions, notation: &PoseNotation) -> Columns {
+pub(super) fn columns(text: &str, layout: &Layout, options: &ImportOptions, notation: &PoseNotation) -> Columns {
+    let mut written = None;
     let mut said = Said::default();
     let mut named: Vec<Option<Role>> = vec![None; layout.num_columns];
     let mut has_header = false;
     if let Some(header) = &layout.header {
         let cells: Vec<&str> = header.iter().map(String::as_str).collect();
-        let (found, found_said) = header::roles(&cells, notation.convention);
+        let (mut found, mut found_said) = header::roles(&cells, notation.convention, None);
+        if let Some(column) = found.iter().position(|role| *role == Some(Role::Notation)) {
+            written = written_in(text, layout, column);
+            let angles = written.as_ref().and_then(|written| written.notation);
+            if let Some(angles) = angles.filter(|known| known.orientation == OrientationForm::Angles) {
+                (found, found_said) = header::roles(&cells, notation.convention, Some(angles.convention));
+            }
+        }
         has_header = options.has_header == Some(true) || found.iter().any(Option::is_some);
         if has_header {
             named = found;
@@ -59,7 +79,7 @@ pub(super) fn columns(layout: &Layout, options: &ImportOptions, notation: &PoseN
     if said.orientation.is_none() && roles.contains(&Role::Orientation(3)) {
         said.orientation = Some(OrientationForm::QuaternionWxyz);
     }
-    Columns { roles, said, has_header }
+    Columns { roles, said, has_header, written }
 }
 
 fn is_complete(roles: &[Option<Role>]) -> bool {
@@ -134,10 +154,24 @@ fn fill_by_values(roles: &mut [Option<Role>], layout: &Layout, said: &mut Said) 
     }
 }
 
-/// How the poses of a table are written: as its header says, else by the size of its numbers, else as `notation` has it.
+/// The notation in a column's first cell.
+fn written_in(text: &str, layout: &Layout, column: usize) -> Option<Written> {
+    let record = records(text).find(|record| record.line >= layout.first_row_line)?;
+    let mut cells = Vec::new();
+    split(record.text, layout.separator, &mut cells);
+    let cell = cells.get(column).filter(|cell| !is_missing(cell.text))?;
+    let at = (record.line, cell.column(record.text));
+    Some(Written { at, text: cell.text.to_owned(), notation: PoseNotation::from_text(cell.text) })
+}
+
+/// How the poses of a table are written: as it says itself, else as its header says, else by the size of its numbers, else as
+/// `notation` has it.
 pub(super) fn notation(layout: &Layout, columns: &Columns, notation: &PoseNotation) -> PoseNotation {
     /// Robots stand further than this from their base in millimetres, and not as far in metres.
     const LARGEST_METRES: f64 = 5.0;
+    if let Some(written) = columns.written.as_ref().and_then(|written| written.notation) {
+        return written;
+    }
     let largest = |is_wanted: fn(Role) -> bool| {
         let values = layout.sample.iter().flat_map(|row| row.iter().zip(&columns.roles));
         values
@@ -229,6 +263,9 @@ pub(super) fn read(
 ) -> Result<(), Cancelled> {
     let notation = *gathered.notation();
     let places = Places::of(&columns.roles, &notation);
+    if let Some(Written { at, text, notation: None }) = &columns.written {
+        gathered.problem(&source.name, *at, text, "how poses are written, as our export says it");
+    }
     if let Err(role) = &places {
         let found = format!("{} columns, none of them with {}", layout.num_columns, wanted(*role, &notation));
         gathered.problem(&source.name, (layout.first_row_line, 1), &found, "a column for each number of a pose");

@@ -5,6 +5,7 @@ use crate::geometry::{AngleOrder, PoseNotation};
 use crate::session::Reading;
 use crate::session::import::{Imported, Kind, Note, Part, Role, Separator, Source};
 
+use super::import_bag as bag;
 use super::plural;
 use super::shell::count;
 
@@ -24,7 +25,7 @@ pub const PASTE_KEYS: &str = "Ctrl+V";
 /// Beside the buttons.
 pub const PASTE_KEY: &str = "Ctrl+V pastes as well";
 /// What the button does.
-pub const IMPORT_HINT: &str = "Spreadsheets (CSV), robot programs, profiles; several files at once";
+pub const IMPORT_HINT: &str = "Spreadsheets (CSV), robot programs, profiles, ROS 2 bags; several files at once";
 /// What the button does.
 pub const IMPORT_FOLDER_HINT: &str = "A folder with poses and numbered profiles";
 /// Menu entry.
@@ -227,6 +228,7 @@ pub const fn kind(kind: Kind) -> &'static str {
         Kind::Profile => "profile",
         Kind::ProfileColumns => "profiles in columns",
         Kind::Yaml => "YAML",
+        Kind::RosBag => "ROS 2 bag",
     }
 }
 
@@ -265,6 +267,7 @@ pub fn role(role: Role, notation: &PoseNotation, point_unit: LengthUnit) -> Stri
         Role::Used => "used".to_owned(),
         Role::Step => "step / mm".to_owned(),
         Role::Profile => "profile".to_owned(),
+        Role::Notation => "notation".to_owned(),
     }
 }
 
@@ -329,7 +332,7 @@ pub fn part(part: &Part) -> String {
     if part.num_readings > 0 {
         gave.push(match part.kind {
             Kind::PoseTable | Kind::PrintedTable => count(part.num_readings, "point"),
-            Kind::Profile | Kind::ProfileColumns => count(part.num_readings, "profile"),
+            Kind::Profile | Kind::ProfileColumns | Kind::RosBag => count(part.num_readings, "profile"),
             _ => count(part.num_readings, "reading"),
         });
     }
@@ -438,6 +441,7 @@ pub fn note(note: &Note) -> String {
         Note::JointPoses { num_poses } => {
             format!("{num_poses} position{} given as joint angles only, left out", were(*num_poses))
         }
+        Note::Bag(report) => bag::report(report),
     }
 }
 

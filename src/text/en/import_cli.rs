@@ -4,6 +4,7 @@ use crate::geometry::PoseNotation;
 use crate::geometry::notation::OrientationForm;
 use crate::session::import::{ImportOptions, Kind, Note, Part, Separator};
 
+use super::import_bag as bag;
 use super::plural;
 use super::shell::count;
 
@@ -21,6 +22,7 @@ pub const fn kind_name(kind: Kind) -> &'static str {
         Kind::Profile => "profile",
         Kind::ProfileColumns => "profiles, one a column",
         Kind::Yaml => "YAML",
+        Kind::RosBag => "ROS 2 bag",
     }
 }
 
@@ -62,6 +64,7 @@ pub fn options_line(options: &ImportOptions) -> String {
     if options.base_from_user_frame.is_some() {
         said.push("in a user frame".to_owned());
     }
+    said.extend(options.bag.axes.map(|axes| bag::axes(axes, options.profile_length_unit.unwrap_or_default())));
     if said.is_empty() { String::new() } else { format!("read as: {}\n", said.join(", ")) }
 }
 
@@ -117,6 +120,7 @@ pub fn note_line(note: &Note) -> String {
         Note::JointPoses { num_poses } => {
             format!("{} given as joint angles only, left out", count(*num_poses, "pose"))
         }
+        Note::Bag(report) => bag::report(report),
     };
     format!("note: {text}\n")
 }
@@ -172,6 +176,12 @@ pub const COMMA_TWICE: &str =
 #[must_use]
 pub fn out_exists(file: &str) -> String {
     format!("--out: found the file {file}, expected a new one; --force overwrites it")
+}
+
+/// There are no topics to list.
+#[must_use]
+pub fn no_bag(file: &str) -> String {
+    format!("{file}: found no ROS 2 bag, expected an .mcap or .db3 file, or the folder of one")
 }
 
 /// Nothing came of it.

@@ -4,18 +4,16 @@ use egui::{Align2, Id, Rect, Stroke, Ui, pos2, vec2};
 use egui_plot::MarkerShape;
 
 use crate::calibrate::{Method, SweepPoint};
+use crate::report::figure::model::{Curve, Peak, curve_extent, curve_points, residual_range};
 use crate::text::arcs as text;
+use crate::text::typeset::{decimals_of_std, std_text};
 use crate::ui::charts::{self, Canvas, Chart, Extent, LegendEntry, LegendGlyph};
-use crate::ui::figures::{decimals_of_std, std_text};
 use crate::ui::{theme, widgets};
 
-use super::model::{Curve, Peak, curve_points};
 use super::profile::rule;
 
 /// The part of the height that the curve takes; its residuals get the rest.
 const CURVE_PART: f32 = 0.62;
-/// The least travel in view, mm.
-const LEAST_STEPS_MM: f64 = 1.0;
 /// Radius of a step's mark, points.
 const STEP_RADIUS: f32 = 3.2;
 /// Half the width of the published stop's label with some room, points.
@@ -129,37 +127,6 @@ fn entries(ui: &Ui, shown: &Curve<'_>) -> Vec<LegendEntry> {
         entries.push(LegendEntry { glyph: LegendGlyph::Line, color, text });
     }
     entries
-}
-
-fn curve_extent(shown: &Curve<'_>, ball_radius_mm: f64) -> Extent {
-    let mut extent = Extent::NOTHING;
-    for point in shown.points {
-        extent.include(point.travel_mm, point.section_radius_mm);
-    }
-    let steps = extent.x[1] - extent.x[0];
-    let near = extent.x[0] - steps..=extent.x[1] + steps;
-    // A peak far beyond the steps would squeeze them into a corner.
-    if let Some(peak) = shown.peak.filter(|peak| near.contains(&peak.travel_mm)) {
-        extent.include(peak.travel_mm, ball_radius_mm);
-    }
-    if let Some(stop_mm) = shown.published_stop_mm {
-        extent.include(stop_mm, ball_radius_mm);
-    }
-    // A search that has just begun: the line that it climbs to is in view, and a step has some width.
-    extent.include(extent.x[0], ball_radius_mm);
-    if steps < LEAST_STEPS_MM {
-        extent.include(extent.x[0] + LEAST_STEPS_MM, ball_radius_mm);
-    }
-    // Room for the label above the line l = R, and for the published stop below the curve.
-    let height = (extent.y[1] - extent.y[0]).max(ball_radius_mm * 1e-3);
-    extent.include(extent.x[0], extent.y[1] + height * 0.08);
-    extent
-}
-
-fn residual_range(points: &[SweepPoint]) -> [f64; 2] {
-    let largest =
-        points.iter().map(|point| (point.residual_mm.abs() + point.section_radius_std_mm) * 1000.0).fold(1.0, f64::max);
-    [-largest * 1.1, largest * 1.1]
 }
 
 /// Paints everything but the steps and the peak's name; answers where the published stop's name stands.

@@ -8,15 +8,16 @@ use egui::{Frame, Key, Margin, Modifiers, ScrollArea, Ui, UiBuilder};
 use crate::app::{Document, Results};
 use crate::calibrate::Sweep;
 use crate::fit::CircleMethod;
+use crate::report::figure::model::{Curve, Found, ball_radius_mm, sweep_of};
 use crate::session::Target;
 use crate::text::arcs as text;
 use crate::text::edges::feature_name;
-use crate::ui::figures::std_text;
+use crate::text::typeset::std_text;
 use crate::ui::save_picture::saveable;
 use crate::ui::{PanelContext, Selection, theme, widgets};
 
 use super::list::Columns;
-use super::model::{self, CaptureView, Found, StationRow};
+use super::model::{self, CaptureView, StationRow};
 use super::{curve, list, profile, scan, spread, strip};
 
 /// Width of the list, points.
@@ -208,7 +209,7 @@ fn plots(
     hovered_in_list: Option<usize>,
 ) {
     let station = &rows[selection.station_idx];
-    let sweep = results.and_then(|results| model::sweep_of(results, selection.station_idx)).map(|(_, sweep)| sweep);
+    let sweep = results.and_then(|results| sweep_of(&results.methods, selection.station_idx)).map(|(_, sweep)| sweep);
     let shown_capture = state
         .hovered_capture
         .filter(|capture_idx| *capture_idx < station.captures.len())
@@ -223,7 +224,7 @@ fn plots(
     let bottom_height = sweep.map_or(0.0, |_| BOTTOM_HEIGHT + theme::GAP);
     let height = ui.available_height() - bottom_height;
     let title = text::profile_title(&station.label, shown_capture + 1);
-    let ball_radius_mm = model::ball_radius_mm(&document.session);
+    let ball_radius_mm = ball_radius_mm(&document.session);
     let width = ui.available_width();
     let hovered_before = state.hovered_capture;
     if width >= SIDE_BY_SIDE_FROM {
@@ -384,9 +385,8 @@ fn curve_card(
                 has_residuals: true,
             };
             let is_fitted = &mut state.is_curve_fitted;
-            let response = saveable(ui, text::RADIUS_AGAINST_STEP, |ui| {
-                curve::show(ui, &model::Curve::of(sweep), &look, is_fitted)
-            });
+            let response =
+                saveable(ui, text::RADIUS_AGAINST_STEP, |ui| curve::show(ui, &Curve::of(sweep), &look, is_fitted));
             state.hovered_capture = response.hovered.or(hovered_in_list);
             if let Some(capture_idx) = response.clicked {
                 selection.capture_idx = capture_idx;

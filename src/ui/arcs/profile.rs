@@ -4,19 +4,16 @@ use egui::{Align2, Color32, Id, Stroke, Ui, vec2};
 use egui_plot::MarkerShape;
 
 use crate::fit::PointClass;
+use crate::report::figure::model::{EdgeModel, Found, ProfileModel, SectionModel, extent, inliers, residual_extent};
 use crate::text::arcs as text;
+use crate::text::typeset::{decimals_of_std, with_std};
 use crate::ui::charts::{self, Canvas, Chart, Extent, LegendEntry, LegendGlyph};
-use crate::ui::figures::{decimals_of_std, with_std};
 use crate::ui::{theme, widgets};
-
-use super::model::{EdgeModel, Found, ProfileModel, SectionModel};
 
 /// The part of the height that the profile takes; its residuals get the rest.
 const PROFILE_PART: f32 = 0.62;
 /// Height of a plot that has room for the whole title of its z axis, points.
 const TITLE_NEEDS: f32 = 200.0;
-/// How far around an edge point the view reaches, as a part of the profile's width.
-const SURROUNDINGS_PART: f64 = 0.3;
 /// Radius of a point of a profile, points.
 const POINT_RADIUS: f32 = 1.6;
 /// Points closer than this, points on the screen, are painted once.
@@ -116,40 +113,6 @@ fn entries(ui: &Ui, model: &ProfileModel) -> Vec<LegendEntry> {
 /// What is fitted to the points has one colour.
 fn fit_color() -> Color32 {
     theme::method_color(crate::calibrate::Method::BallMaxArc)
-}
-
-/// The surroundings of an edge point; else the near half of the ball with some room towards the sensor; all points as well where `shows_whole`, and only them
-/// without a section.
-#[must_use]
-pub fn extent(model: &ProfileModel, shows_whole: bool) -> Extent {
-    let mut extent = Extent::NOTHING;
-    if let Some(SectionModel { circle, .. }) = model.section() {
-        let reach_mm = model.ball_radius_mm.unwrap_or(circle.radius_mm).max(circle.radius_mm);
-        let towards_sensor = if model.z_grows_away { -1.0 } else { 1.0 };
-        extent.include(circle.x_mm - reach_mm * 1.15, circle.z_mm + towards_sensor * reach_mm * 1.2);
-        extent.include(circle.x_mm + reach_mm * 1.15, circle.z_mm - towards_sensor * reach_mm * 0.45);
-        if !shows_whole {
-            return extent;
-        }
-    }
-    for point in &model.points {
-        extent.include(point.x_mm, point.z_mm);
-    }
-    if let Some(edge) = model.edge().filter(|_| !shows_whole) {
-        let reach_mm = (extent.x[1] - extent.x[0]) * SURROUNDINGS_PART;
-        let [x_mm, z_mm] = edge.point_mm;
-        return Extent { x: [x_mm - reach_mm, x_mm + reach_mm], y: [z_mm - reach_mm, z_mm + reach_mm] };
-    }
-    extent
-}
-
-fn residual_extent(model: &ProfileModel) -> Extent {
-    let largest = inliers(model).map(|point| point.residual_um.abs()).fold(1.0, f64::max);
-    Extent { x: [-1.0, 1.0], y: [-largest * 1.1, largest * 1.1] }
-}
-
-fn inliers(model: &ProfileModel) -> impl Iterator<Item = &super::model::ProfilePoint> {
-    model.points.iter().filter(|point| point.class == PointClass::Inlier)
 }
 
 fn paint_profile(ui: &Ui, canvas: &Canvas, model: &ProfileModel) {

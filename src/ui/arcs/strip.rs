@@ -4,13 +4,14 @@ use egui::{Align, ComboBox, Frame, Layout, Margin, Ui};
 
 use crate::calibrate::Sweep;
 use crate::fit::CircleMethod;
+use crate::report::figure::model::{EdgeModel, Found, ProfileModel};
 use crate::session::ScanLine;
 use crate::text::arcs as text;
 use crate::text::edges::feature_name;
-use crate::ui::figures::with_std;
+use crate::text::typeset::with_std;
 use crate::ui::{Selection, theme, widgets};
 
-use super::model::{CaptureView, EdgeModel, Found, ProfileModel, StationRow};
+use super::model::{CaptureView, StationRow};
 use super::profile;
 
 /// Height of the strip.

@@ -9,14 +9,14 @@ use crate::app::cell::LiveProfile;
 use crate::calibrate::Reading;
 use crate::device::LinkState;
 use crate::fit::{CircleMethod, Found};
+use crate::report::figure::model::{Curve, ProfileModel, extent, profile_model};
 use crate::text::arcs::edge_found;
 use crate::text::capture as words;
 use crate::text::edges::feature_name;
+use crate::text::typeset::with_std;
 use crate::ui::arcs::curve::{self, CurveLook};
-use crate::ui::arcs::model::{Curve, ProfileModel, profile_model};
 use crate::ui::arcs::profile;
 use crate::ui::charts::Extent;
-use crate::ui::figures::with_std;
 use crate::ui::save_picture::saveable;
 use crate::ui::theme;
 use crate::ui::widgets::{card_with_height, fixed, nothing};
@@ -77,7 +77,7 @@ fn live_card(ui: &mut Ui, height: f32, desk: &mut Desk<'_>) {
         }
         let model = desk.state.profile_of(live, ball_radius_mm);
         found_line(ui, live);
-        let extent = profile::extent(&model, true);
+        let extent = extent(&model, true);
         let steady = steady(desk.state.view, [extent.x, extent.y]);
         desk.state.view = Some(steady);
         let extent = Extent { x: steady[0], y: steady[1] };

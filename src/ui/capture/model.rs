@@ -9,11 +9,11 @@ use crate::device::search::SearchPoint;
 use crate::device::{LinkState, Readiness, RobotReport, SearchPhase, SearchReport};
 use crate::geometry::{Base, Flange, PoseNotation, Transform};
 use crate::plan::{Plan, PlannedStation};
+use crate::report::figure::model::{Peak, ball_radius_mm};
 use crate::session::{Edge, Reading, Session, Target, sought};
 use crate::text::capture as words;
 use crate::text::capture_edges as words_of_edges;
 use crate::text::capture_settings::{self as words_of_settings, problem};
-use crate::ui::arcs::model::{Peak, ball_radius_mm};
 use crate::ui::widgets::fixed;
 
 /// What the panel is a picture of.

@@ -9,9 +9,9 @@ use crate::app::Command;
 use crate::app::cell::{CellCommand, CellSettings};
 use crate::device::{LinkState, RobotSetup, SearchReport};
 use crate::geometry::{Profile, Vec3};
+use crate::report::figure::model::ProfileModel;
 use crate::session::Target;
 use crate::ui::actions::Action;
-use crate::ui::arcs::model::ProfileModel;
 use crate::ui::rail::Step;
 use crate::ui::{PanelContext, theme};
 

@@ -9,7 +9,7 @@ use crate::session::Target;
 use crate::text::capture as words;
 use crate::text::capture_edges as words_of_edges;
 use crate::text::cell::reason_of_end;
-use crate::ui::figures::std_text;
+use crate::text::typeset::std_text;
 use crate::ui::theme;
 use crate::ui::widgets::{card_with_height, fixed};
 

@@ -4,16 +4,17 @@
 
 mod legend;
 mod marks;
-mod orbit;
 
 use egui::{Id, Painter, Pos2, Rangef, Rect, Response, Sense, Ui, UiBuilder, pos2, vec2};
 use egui_plot::{AxisHints, GridInput, GridMark, Plot, PlotPoint, PlotTransform};
 
-use crate::ui::{theme, widgets};
+use crate::report::figure::{multiples, round_step, tick_label};
+use crate::ui::theme;
+
+pub use crate::report::figure::Extent;
 
 pub use legend::{LegendEntry, LegendGlyph, legend};
 pub use marks::{arrow, dashed_circle, dashed_line, dotted_line, ellipse, error_bar, marker, thinned};
-pub use orbit::Orbit;
 
 /// Grid lines of the y axis stand at least this far apart, points.
 const GRID_SPACING: f32 = 28.0;
@@ -25,50 +26,6 @@ const Y_AXIS_WIDTH: f32 = 58.0;
 const LEFT_MARGIN: f32 = 6.0;
 /// Room for the half of the last tick label that stands beyond the axis, points.
 const RIGHT_MARGIN: f32 = 14.0;
-/// Free room around the data, as a part of its extent.
-const MARGIN: f64 = 0.06;
-
-/// What a plot shows when it is fitted to its data.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Extent {
-    /// Range of x.
-    pub x: [f64; 2],
-    /// Range of y.
-    pub y: [f64; 2],
-}
-
-impl Extent {
-    /// Nothing yet; grows with [`Self::include`].
-    pub const NOTHING: Self = Self { x: [f64::INFINITY, f64::NEG_INFINITY], y: [f64::INFINITY, f64::NEG_INFINITY] };
-
-    /// Grows to hold a point.
-    pub fn include(&mut self, x: f64, y: f64) {
-        self.x = [self.x[0].min(x), self.x[1].max(x)];
-        self.y = [self.y[0].min(y), self.y[1].max(y)];
-    }
-
-    /// With a margin, and never empty.
-    fn with_margin(self) -> Self {
-        let widen = |[low, high]: [f64; 2]| {
-            if !(low.is_finite() && high.is_finite()) {
-                return [-1.0, 1.0];
-            }
-            let margin = if high > low { (high - low) * MARGIN } else { low.abs().max(1.0) * MARGIN };
-            [low - margin, high + margin]
-        };
-        Self { x: widen(self.x), y: widen(self.y) }
-    }
-
-    /// Widened in one direction until both scales are equal in a plot of this size.
-    fn with_equal_scales(self, width: f64, height: f64) -> Self {
-        let scale = ((self.x[1] - self.x[0]) / width).max((self.y[1] - self.y[0]) / height);
-        let around = |[low, high]: [f64; 2], size: f64| {
-            let middle = f64::midpoint(low, high);
-            [middle - scale * size / 2.0, middle + scale * size / 2.0]
-        };
-        Self { x: around(self.x, width), y: around(self.y, height) }
-    }
-}
 
 /// A plot to be shown.
 pub struct Chart<'a> {
@@ -273,12 +230,7 @@ impl Canvas {
 }
 
 fn tick(mark: GridMark) -> String {
-    if mark.value.abs() < mark.step_size * 1e-6 {
-        return "0".to_owned();
-    }
-    let decimals = (-mark.step_size.log10()).ceil().clamp(0.0, 6.0);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to 0..=6")]
-    widgets::fixed(mark.value, decimals as usize)
+    tick_label(mark.value, mark.step_size)
 }
 
 fn name_at(names: &[String], value: f64) -> String {
@@ -288,13 +240,7 @@ fn name_at(names: &[String], value: f64) -> String {
 
 /// Grid lines at 1, 2 or 5 times a power of ten.
 fn marks(input: &GridInput, factor: f64) -> Vec<GridMark> {
-    let smallest = input.base_step_size * factor * 1.05;
-    if !(smallest.is_finite() && smallest > 0.0) {
-        return Vec::new();
-    }
-    let decade = 10.0_f64.powf(smallest.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * decade).into_iter().find(|step| *step >= smallest);
-    spaced(input.bounds, step.unwrap_or(smallest))
+    round_step(input.base_step_size * factor * 1.05).map_or_else(Vec::new, |step| spaced(input.bounds, step))
 }
 
 /// Every name, or every n-th where they are too wide to stand side by side.
@@ -314,33 +260,12 @@ fn widest(ui: &Ui, names: &[String], font: &egui::FontId) -> f32 {
 }
 
 fn spaced((low, high): (f64, f64), step: f64) -> Vec<GridMark> {
-    const MOST: f64 = 500.0;
-    let (first, last) = ((low / step).ceil(), (high / step).floor());
-    let count = last - first;
-    if count.is_nan() || count > MOST {
-        return Vec::new();
-    }
-    let mut values = Vec::new();
-    let mut multiple = first;
-    while multiple <= last {
-        values.push(GridMark { value: multiple * step, step_size: step });
-        multiple += 1.0;
-    }
-    values
+    multiples([low, high], step).into_iter().map(|value| GridMark { value, step_size: step }).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn grid_lines_fall_on_round_numbers() {
-        let input = GridInput { bounds: (-0.31, 0.29), base_step_size: 0.07 };
-        let values: Vec<f64> = marks(&input, 1.0).iter().map(|mark| mark.value).collect();
-        assert_eq!(values.len(), 6, "{values:?}");
-        assert!(values.iter().all(|value| (value * 10.0 - (value * 10.0).round()).abs() < 1e-9), "{values:?}");
-        assert_eq!(tick(GridMark { value: -0.2, step_size: 0.1 }), "−0.2");
-    }
 
     #[test]
     fn names_without_room_are_thinned_evenly() {
@@ -349,17 +274,5 @@ mod tests {
         let values: Vec<f64> = whole_marks(&input, 24.0).iter().map(|mark| mark.value).collect();
         assert_eq!(values.len(), 7, "{values:?}");
         assert!(values.windows(2).all(|pair| (pair[1] - pair[0] - 3.0).abs() < 1e-9), "{values:?}");
-    }
-
-    #[test]
-    fn equal_scales_only_widen() {
-        let extent = Extent { x: [0.0, 10.0], y: [0.0, 1.0] }.with_equal_scales(200.0, 100.0);
-        assert_eq!(extent, Extent { x: [0.0, 10.0], y: [-2.0, 3.0] });
-    }
-
-    #[test]
-    fn an_empty_extent_still_has_a_view() {
-        let view = Extent::NOTHING.with_margin();
-        assert!(view.x[1] > view.x[0] && view.y[1] > view.y[0]);
     }
 }

@@ -3,7 +3,7 @@
 use egui::{Pos2, Rect, Vec2, pos2};
 use nalgebra::Vector3;
 
-use crate::ui::charts::Orbit;
+use crate::report::figure::Orbit;
 
 /// The view of a cloud. Points are offsets from the cloud's origin, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,7 +65,7 @@ impl Camera {
 
     /// Turns as if the cloud were dragged.
     pub fn turn(&mut self, drag: Vec2) {
-        self.orbit.turn(drag);
+        self.orbit.turn(drag.into());
     }
 
     /// Moves the cloud along with the pointer.

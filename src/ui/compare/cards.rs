@@ -9,7 +9,7 @@ use crate::calibrate::{Method, Mount};
 use crate::report::comparison::{Column, ErrorReference, MethodTable, Row};
 use crate::text::compare as text;
 use crate::text::methods::{method_name, method_short_name};
-use crate::ui::figures::std_text;
+use crate::text::typeset::std_text;
 use crate::ui::{Selection, charts, theme, widgets};
 
 use super::paper;

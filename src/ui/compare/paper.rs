@@ -91,7 +91,7 @@ fn block<'n>(
         painter.text(at, Align2::LEFT_CENTER, name, FontId::proportional(theme::SMALL_SIZE), palette.text_dim);
         let at = line.right_center() - vec2(6.0, 0.0);
         painter.text(at, Align2::RIGHT_CENTER, &words, theme::number_font(), color);
-        row.name(line, &format!("{name} {words}"), Some(&crate::ui::figures::all_digits(value)));
+        row.name(line, &format!("{name} {words}"), Some(&crate::text::typeset::all_digits(value)));
         top += LINE_HEIGHT;
     }
 }

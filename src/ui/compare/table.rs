@@ -4,7 +4,7 @@
 use egui::{Align2, Color32, FontId, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 use crate::text::compare as text;
-use crate::ui::figures::all_digits;
+use crate::text::typeset::all_digits;
 use crate::ui::{theme, widgets};
 
 /// Upper ends of the classes of errors, mm; beyond the last is the strongest tint. The same in every table, so that

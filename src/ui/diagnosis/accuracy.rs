@@ -10,7 +10,7 @@ use crate::calibrate::{Method, Solution, Uncertainty};
 use crate::geometry::Mat3;
 use crate::text::diagnosis as fault_words;
 use crate::text::diagnosis_panel as words;
-use crate::ui::figures::{all_digits, std_text};
+use crate::text::typeset::{all_digits, std_text};
 use crate::ui::save_picture::saveable;
 use crate::ui::widgets::{fixed, number_text, split_row, value_row};
 use crate::ui::{charts, theme, widgets};

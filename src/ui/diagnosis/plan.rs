@@ -7,7 +7,7 @@ use crate::app::Command;
 use crate::diagnose::Diagnosis;
 use crate::plan::{Limits, Plan};
 use crate::text::diagnosis_panel as words;
-use crate::ui::figures::std_text;
+use crate::text::typeset::std_text;
 use crate::ui::widgets::tables::{head, number_cell, number_head, table};
 use crate::ui::{theme, widgets};
 

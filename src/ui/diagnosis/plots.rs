@@ -5,15 +5,16 @@ use egui_plot::MarkerShape;
 
 use crate::app::Command;
 use crate::diagnose::{CurveAxis, Plot, StationBar};
+use crate::report::figure::model::station_bars;
 use crate::text::diagnosis as fault_words;
 use crate::text::diagnosis_panel as words;
+use crate::text::typeset::{std_text, with_std};
 use crate::ui::charts::{self, Chart, Extent, LegendEntry, LegendGlyph};
-use crate::ui::figures::{std_text, with_std};
 use crate::ui::save_picture::saveable;
 use crate::ui::{PanelContext, Selection, theme, widgets};
 
 use super::bars::{self, Bar};
-use super::model::{self, Shown, View};
+use super::model::{Shown, View};
 use super::panel::DiagnosisState;
 use super::{readings, triad};
 
@@ -32,7 +33,7 @@ pub fn evidence(ui: &mut Ui, height: f32, view: &View<'_>, context: &mut PanelCo
     let title =
         evidence.map_or_else(|| words::stations_agree(target).to_owned(), |plot| fault_words::plot_title(plot, target));
     // Where there is nothing of its own to show, how far each station is off the others puts the finding in scale.
-    let of_all = || view.solution().and_then(|solution| model::stations(solution, found.map(|finding| &finding.fault)));
+    let of_all = || view.solution().and_then(|solution| station_bars(solution, found.map(|finding| &finding.fault)));
     let plot = evidence.cloned().or_else(of_all);
     let right = |ui: &mut Ui| {
         if matches!(plot, Some(Plot::Readings(_))) {

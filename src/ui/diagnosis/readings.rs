@@ -8,7 +8,7 @@ use crate::app::Command;
 use crate::diagnose::{ReadingFit, Remedy};
 use crate::text::diagnosis::pose_reading;
 use crate::text::diagnosis_panel as words;
-use crate::ui::figures::std_text;
+use crate::text::typeset::std_text;
 use crate::ui::{PanelContext, theme};
 
 /// Height of a way, points: its name, and below it what it ties with and its bar.

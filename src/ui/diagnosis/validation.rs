@@ -5,8 +5,8 @@ use egui_plot::MarkerShape;
 
 use crate::calibrate::validation::{SplitHalf, Validation};
 use crate::text::diagnosis_panel as words;
+use crate::text::typeset::std_text;
 use crate::ui::charts::{self, Chart, Extent, LegendEntry, LegendGlyph};
-use crate::ui::figures::std_text;
 use crate::ui::save_picture::saveable;
 use crate::ui::{Selection, theme, widgets};
 

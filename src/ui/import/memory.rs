@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
 use crate::geometry::{Flange, PoseConvention, PoseNotation, Tcp, Transform, Vec3};
-use crate::session::import::{ImportError, ImportOptions, Imported, Kind, Role, Separator, Source};
+use crate::session::import::{BagOptions, ImportError, ImportOptions, Imported, Kind, Role, Separator, Source};
 
 /// Forms of tables that are remembered.
 const MAX_FORMS: usize = 32;
@@ -120,7 +120,7 @@ struct Frame {
     quaternion_wxyz: [f64; 4],
 }
 
-const KINDS: [(Kind, &str); 10] = [
+const KINDS: [(Kind, &str); 11] = [
     (Kind::Session, "session"),
     (Kind::PoseTable, "pose-table"),
     (Kind::PrintedTable, "printed-table"),
@@ -131,6 +131,7 @@ const KINDS: [(Kind, &str); 10] = [
     (Kind::Profile, "profile"),
     (Kind::ProfileColumns, "profile-columns"),
     (Kind::Yaml, "yaml"),
+    (Kind::RosBag, "ros-bag"),
 ];
 
 const SEPARATORS: [(Separator, &str); 4] = [
@@ -146,7 +147,7 @@ const FORMS: [(OrientationForm, &str); 3] = [
     (OrientationForm::QuaternionXyzw, "quaternion-xyzw"),
 ];
 
-const ROLES: [(Role, &str); 17] = [
+const ROLES: [(Role, &str); 18] = [
     (Role::Ignore, "ignore"),
     (Role::Label, "label"),
     (Role::Position(0), "x"),
@@ -164,6 +165,7 @@ const ROLES: [(Role, &str); 17] = [
     (Role::Used, "used"),
     (Role::Step, "step"),
     (Role::Profile, "profile"),
+    (Role::Notation, "notation"),
 ];
 
 fn name_of<T: Copy + PartialEq>(names: &[(T, &'static str)], value: T) -> &'static str {
@@ -205,6 +207,8 @@ impl Settings {
                 .profiles_in_metres
                 .map(|in_metres| if in_metres { LengthUnit::Metres } else { LengthUnit::Millimetres }),
             is_z_mirrored: self.is_z_mirrored,
+            // Topics and frames are those of one robot, and each bag shows its own.
+            bag: BagOptions::default(),
         }
     }
 }
@@ -281,6 +285,7 @@ mod tests {
             base_from_user_frame: Some([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
             profile_length_unit: Some(LengthUnit::Metres),
             is_z_mirrored: true,
+            bag: BagOptions::default(),
         }
     }
 

@@ -1,5 +1,6 @@
 //! The import's preview: what was read, how, and what to make of it.
 
+mod bag;
 mod fields;
 pub mod memory;
 pub mod model;

@@ -17,7 +17,7 @@ pub fn role_choices(notation: &PoseNotation) -> Vec<Role> {
     choices.extend((0..3).map(Role::Position));
     choices.extend((0..notation.orientation_names().len()).map(Role::Orientation));
     choices.extend((0..3).map(Role::Point));
-    choices.extend([Role::Profile, Role::Step, Role::Side, Role::Edge, Role::Used]);
+    choices.extend([Role::Profile, Role::Step, Role::Side, Role::Edge, Role::Used, Role::Notation]);
     choices
 }
 
@@ -56,7 +56,7 @@ pub fn may_have_poses(imported: &Imported) -> bool {
 /// Whether profiles were read.
 #[must_use]
 pub fn has_profiles(imported: &Imported) -> bool {
-    let of_profiles = |kind| matches!(kind, Kind::Profile | Kind::ProfileColumns | Kind::Yaml);
+    let of_profiles = |kind| matches!(kind, Kind::Profile | Kind::ProfileColumns | Kind::Yaml | Kind::RosBag);
     imported.parts.iter().any(|part| part.num_readings > 0 && of_profiles(part.kind))
 }
 
@@ -71,7 +71,7 @@ pub fn marked_cells(imported: &Imported, sources: &[Source]) -> BTreeMap<usize, 
         let Some(row_idx) = rows.iter().position(|(line, _)| *line == problem.line) else { continue };
         let marks = marked.entry(row_idx).or_default();
         let source = sources.iter().find(|source| source.name == problem.file);
-        let line = source.and_then(|source| source.text.lines().nth(problem.line.saturating_sub(1)));
+        let line = source.and_then(|source| source.text().lines().nth(problem.line.saturating_sub(1)));
         // Elsewhere the cells of the preview do not stand in one line of the text.
         if let Some(line) = line.filter(|_| is_table) {
             marks.extend(cell_at(line, &rows[row_idx].1, problem.column));
@@ -120,7 +120,7 @@ pub fn column_chars(preview: &Preview) -> Vec<usize> {
 pub fn beginning(sources: &[Source]) -> Vec<String> {
     let Some(source) = sources.first() else { return Vec::new() };
     let visible = |c: char| if c == '\t' { '→' } else { c };
-    source.text.lines().take(MAX_LINES).map(|line| line.chars().take(MAX_LINE_CHARS).map(visible).collect()).collect()
+    source.text().lines().take(MAX_LINES).map(|line| line.chars().take(MAX_LINE_CHARS).map(visible).collect()).collect()
 }
 
 /// A tool point from its place in the flange: mm, and degrees in the convention's angles.
@@ -155,7 +155,7 @@ mod tests {
     #[test]
     fn every_role_can_be_chosen_and_a_quaternion_has_four_numbers() {
         let mut notation = PoseNotation::default();
-        assert_eq!(role_choices(&notation).len(), 16);
+        assert_eq!(role_choices(&notation).len(), 17);
         notation.orientation = crate::geometry::notation::OrientationForm::QuaternionWxyz;
         assert!(role_choices(&notation).contains(&Role::Orientation(3)));
     }
@@ -167,7 +167,7 @@ mod tests {
         for (column, cell) in [(1, 0), (4, 1), (10, 2), (13, 2), (15, 3), (99, 3)] {
             assert_eq!(cell_at(line, &cells, column), Some(cell), "column {column}");
         }
-        let source = Source { name: "a.csv".to_owned(), text: format!("head\n{line}\n") };
+        let source = Source::from_text("a.csv", format!("head\n{line}\n"));
         let problem = Problem {
             file: "a.csv".to_owned(),
             line: 2,

@@ -148,7 +148,9 @@ fn head(ui: &mut Ui, draft: &ImportDraft, imported: &Imported, column: usize) ->
 /// Numbers stand at the right of their columns, texts at the left.
 fn cell_layout(role: Role) -> Layout {
     match role {
-        Role::Label | Role::Side | Role::Edge | Role::Used | Role::Profile => Layout::left_to_right(Align::Center),
+        Role::Label | Role::Side | Role::Edge | Role::Used | Role::Profile | Role::Notation => {
+            Layout::left_to_right(Align::Center)
+        }
         _ => Layout::right_to_left(Align::Center),
     }
 }
@@ -228,7 +230,7 @@ fn remarks(ui: &mut Ui, imported: &Imported, height: f32) {
 
 /// Where nothing could be read: why, what could be, and how the text begins.
 pub fn show_error(ui: &mut Ui, draft: &ImportDraft, error: &ImportError) {
-    let is_empty = draft.sources.iter().all(|source| source.text.trim().is_empty());
+    let is_empty = draft.sources.iter().all(|source| source.text().trim().is_empty() && source.bag().is_none());
     let is_pasted = draft.sources.iter().any(|source| source.name == words::PASTED);
     let height = ui.available_height();
     ScrollArea::vertical().id_salt("import error").auto_shrink(false).max_height(height).show(ui, |ui| {

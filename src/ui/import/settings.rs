@@ -5,12 +5,12 @@ use egui::{Label, ScrollArea, Ui};
 use crate::app::ImportDraft;
 use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
 use crate::geometry::{PoseConvention, PoseNotation};
-use crate::session::import::{ImportError, ImportOptions, Imported, Kind, Separator};
+use crate::session::import::{ImportError, ImportOptions, Imported, Kind, Separator, Source};
 use crate::text::import as words;
 use crate::ui::theme;
 
 use super::fields::{self, SixNumbers};
-use super::model;
+use super::{bag, model};
 
 /// Sources that are listed before the list scrolls.
 const MAX_SOURCES_HEIGHT: f32 = 132.0;
@@ -22,6 +22,7 @@ const LENGTH_UNITS: [LengthUnit; 2] = [LengthUnit::Millimetres, LengthUnit::Metr
 pub struct Typed {
     tool_point: SixNumbers,
     user_frame: SixNumbers,
+    bag: bag::Typed,
 }
 
 /// Draws the settings; answers the options with what the user has changed.
@@ -40,7 +41,11 @@ pub fn show(ui: &mut Ui, draft: &ImportDraft, typed: &mut Typed) -> Option<Impor
         change(&mut options);
         changed = Some(options);
     };
-    text(ui, imported, current, &mut set);
+    let shown = draft.sources.iter().find_map(Source::bag);
+    match shown {
+        Some(bag) => bag::show(ui, bag, current, &mut typed.bag, &mut set),
+        None => text(ui, imported, current, &mut set),
+    }
     let is_unknown = matches!(draft.outcome, Some(Err(ImportError::NotRecognised { .. })));
     if is_unknown && draft.options.kind.is_none() {
         return changed;
@@ -54,7 +59,7 @@ pub fn show(ui: &mut Ui, draft: &ImportDraft, typed: &mut Typed) -> Option<Impor
     changed
 }
 
-type Set<'a> = &'a mut dyn FnMut(&dyn Fn(&mut ImportOptions));
+pub(super) type Set<'a> = &'a mut dyn FnMut(&dyn Fn(&mut ImportOptions));
 
 fn sources(ui: &mut Ui, draft: &ImportDraft, imported: Option<&Imported>) {
     ScrollArea::vertical().id_salt("import sources").max_height(MAX_SOURCES_HEIGHT).show(ui, |ui| {

@@ -9,7 +9,7 @@ use crate::session::Reading;
 use crate::text::edges::{edge_name, feature_hint, feature_name};
 use crate::text::methods::method_short_name;
 use crate::text::shell as words;
-use crate::ui::figures::{all_digits, decimals_of_std, with_std};
+use crate::text::typeset::{all_digits, decimals_of_std, with_std};
 use crate::ui::widgets::{fixed, number_text, split_row, value_row};
 use crate::ui::{PanelContext, theme};
 

@@ -13,7 +13,7 @@ use crate::report::tool_frame::{Format, Group, Name, NotThisFormat, Parent, Roun
 use crate::text::methods::method_name;
 use crate::text::report_panel as panel_words;
 use crate::text::tool_frame as words;
-use crate::ui::figures::std_text;
+use crate::text::typeset::std_text;
 use crate::ui::file_dialog::Purpose;
 use crate::ui::save_file::{self, SaveFile};
 use crate::ui::widgets::{self, FromTop, fixed, name_field};

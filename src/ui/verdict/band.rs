@@ -9,8 +9,8 @@ use crate::report::judgement::Judgement;
 use crate::text::compare as text;
 use crate::text::diagnosis_panel as next_words;
 use crate::text::methods::{method_name, method_short_name, verdict_mark, verdict_name};
+use crate::text::typeset::std_text;
 use crate::ui::actions::Action;
-use crate::ui::figures::std_text;
 use crate::ui::{PanelContext, Step, theme, widgets};
 
 use super::model::NextStep;

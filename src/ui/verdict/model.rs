@@ -4,7 +4,7 @@ use crate::diagnose::{Diagnosis, Remedy, Severity};
 use crate::plan::Plan;
 use crate::session::Session;
 use crate::text;
-use crate::ui::figures::std_text;
+use crate::text::typeset::std_text;
 use crate::ui::widgets;
 
 /// A station that makes the point better known by less than this part is not worth naming.

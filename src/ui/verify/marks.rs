@@ -3,15 +3,11 @@
 use egui::{Align2, Color32, Pos2, Rect, Stroke, Ui, vec2};
 use egui_plot::MarkerShape;
 
+use crate::report::figure::palette::{CalibrationLook, calibration_look};
 use crate::text::verify as words;
 use crate::ui::charts::{self, LegendEntry, LegendGlyph};
 use crate::ui::theme;
 use crate::verify::{Origin, Verification};
-
-/// From all targets together; of the same palette as the methods.
-const JOINT: Color32 = Color32::from_rgb(0xd5, 0x5e, 0x00);
-/// From elsewhere.
-const GIVEN: Color32 = Color32::from_rgb(0x56, 0xb4, 0xe9);
 
 /// A calibration as it is shown.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,16 +26,9 @@ impl Mark {
     /// One entry a calibration, in their order.
     pub fn all(verification: &Verification) -> Vec<Self> {
         let of = |origin: &Origin| {
-            let further = match origin {
-                Origin::Solved { target_idx, .. } => Some(*target_idx).filter(|idx| *idx > 0),
-                _ => None,
-            };
-            let (color, shape) = match (origin, origin.method()) {
-                (_, Some(method)) => (theme::method_color(method), theme::method_marker(method)),
-                (Origin::Joint { .. }, _) => (JOINT, MarkerShape::Diamond),
-                _ => (GIVEN, MarkerShape::Down),
-            };
-            Self { name: words::calibration_name(origin, verification), color, shape, further }
+            let CalibrationLook { color, marker, further } = calibration_look(origin);
+            let name = words::calibration_name(origin, verification);
+            Self { name, color: theme::color_of(color), shape: theme::marker_shape(marker), further }
         };
         verification.calibrations.iter().map(|calibration| of(&calibration.origin)).collect()
     }

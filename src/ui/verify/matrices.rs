@@ -5,9 +5,9 @@ use nalgebra::Matrix4;
 
 use crate::app::Command;
 use crate::geometry::{Flange, Sensor, Transform};
+use crate::text::typeset::std_text;
 use crate::text::verify as words;
 use crate::ui::compare::table::RowCells;
-use crate::ui::figures::std_text;
 use crate::ui::{PanelContext, theme, widgets};
 use crate::verify::{Calibration, GivenMatrix, MatrixCheck, MatrixDifference, MatrixRefusal, Origin, parse_matrix};
 

@@ -5,8 +5,9 @@ use egui::{Align2, Color32, FontId, Key, Painter, Pos2, Rect, Role, Sense, Shape
 
 use crate::calibrate::Edge;
 use crate::geometry::{Mat3, Vec3};
+use crate::report::figure::Orbit;
 use crate::text::verify as words;
-use crate::ui::charts::{Orbit, arrow};
+use crate::ui::charts::arrow;
 use crate::ui::{theme, widgets};
 use crate::verify::Distances;
 
@@ -146,7 +147,7 @@ pub fn show(ui: &mut Ui, distances: &Distances, mark: &Mark, camera: &mut Camera
 
 fn steer(ui: &Ui, response: &egui::Response, camera: &mut Camera) {
     if response.dragged() {
-        camera.orbit.turn(response.drag_delta());
+        camera.orbit.turn(response.drag_delta().into());
     }
     if response.clicked() {
         response.request_focus();
@@ -160,7 +161,7 @@ fn steer(ui: &Ui, response: &egui::Response, camera: &mut Camera) {
                 (Key::ArrowDown, vec2(0.0, -KEY_STEP)),
             ] {
                 if input.key_pressed(key) {
-                    camera.orbit.turn(step);
+                    camera.orbit.turn(step.into());
                 }
             }
         });

@@ -1,4 +1,4 @@
-//! Numbers: tabular figures, fixed decimals, the true minus sign, right-aligned.
+//! Numbers: tabular figures, right-aligned.
 
 use egui::{
     Align, FontSelection, Label, Layout, Response, RichText, Sense, TextWrapMode, Ui, UiBuilder, WidgetText, vec2,
@@ -6,27 +6,7 @@ use egui::{
 
 use crate::ui::theme;
 
-/// `value` with a fixed number of decimals and the true minus sign; a dash where there is no finite value.
-#[must_use]
-pub fn fixed(value: f64, decimals: usize) -> String {
-    if !value.is_finite() {
-        return "–".to_owned();
-    }
-    let text = format!("{value:.decimals$}");
-    match text.strip_prefix('-') {
-        // "-0.00" is nothing but rounding.
-        Some(digits) if digits.bytes().all(|byte| matches!(byte, b'0' | b'.')) => digits.to_owned(),
-        Some(digits) => format!("−{digits}"),
-        None => text,
-    }
-}
-
-/// As [`fixed`], with a plus sign before positive values, for differences.
-#[must_use]
-pub fn signed(value: f64, decimals: usize) -> String {
-    let text = fixed(value, decimals);
-    if text.starts_with(['−', '–']) { text } else { format!("+{text}") }
-}
+pub use crate::text::typeset::{fixed, signed};
 
 /// `text` in tabular figures.
 pub fn number_text(text: impl Into<String>) -> RichText {
@@ -74,17 +54,3 @@ pub fn split_row<R>(ui: &mut Ui, label: &str, right: impl FnOnce(&mut Ui) -> R) 
 const LABEL_GAP: f32 = 4.0;
 /// The part of a row that its label takes at most before the right side has what it needs.
 const MOST_LABEL_PART: f32 = 0.6;
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_carry_a_true_minus_and_no_negative_zero() {
-        assert_eq!(fixed(-1.25, 1), "−1.2");
-        assert_eq!(fixed(-0.0004, 3), "0.000");
-        assert_eq!(fixed(f64::NAN, 3), "–");
-        assert_eq!(signed(0.5, 2), "+0.50");
-        assert_eq!(signed(-0.5, 2), "−0.50");
-    }
-}

@@ -14,7 +14,7 @@ use super::super::{NoticeKind, Workbench};
 use super::choose::{Basis, Chooser, Chosen, check_station};
 
 /// Further than this the sensor is not tilted about a tip, degrees.
-const MOST_TILT_AT_TIP_DEG: f64 = 18.0;
+const MOST_TILT_AT_TIP_DEG: f64 = 12.0;
 
 /// A solution whose σ is above this (mm) may be further off than the edges of the view: what was said of the mounting is
 /// still worth more.

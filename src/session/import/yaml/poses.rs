@@ -249,7 +249,7 @@ fn by_roles(entries: &[(Box<str>, Item)], before: &[&str]) -> (Vec<(Role, f64)>,
         })
         .collect();
     let names: Vec<&str> = before.iter().copied().chain(scalars.iter().map(|(key, _)| *key)).collect();
-    let (roles, said) = header::roles(&names, PoseConvention::default_convention());
+    let (roles, said) = header::roles(&names, PoseConvention::default_convention(), None);
     let values = scalars.iter().zip(roles.iter().skip(before.len()));
     (values.filter_map(|((_, number), role)| role.map(|role| (role, *number))).collect(), said)
 }

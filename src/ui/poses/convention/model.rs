@@ -2,9 +2,9 @@
 
 use crate::geometry::notation::{AngleUnit, LengthUnit, NotAPose, OrientationForm};
 use crate::geometry::{Base, Flange, PoseConvention, PoseNotation, Transform, Vec3, so3};
+use crate::report::figure::Orbit;
 use crate::session::{Edit, EditRefusal, Session};
 use crate::text::conventions as words;
-use crate::ui::charts::Orbit;
 
 /// So many poses are drawn and listed; more would hide each other.
 pub const MAX_FRAMES: usize = 8;

@@ -3,8 +3,9 @@
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Role, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 use crate::geometry::Vec3;
+use crate::report::figure::Orbit;
 use crate::text::conventions as words;
-use crate::ui::charts::{Orbit, arrow};
+use crate::ui::charts::arrow;
 use crate::ui::theme;
 
 use super::model::{Extent, NamedFrame};
@@ -24,7 +25,7 @@ pub fn show(ui: &mut Ui, rect: Rect, title: &str, frames: &[NamedFrame], camera:
     let name = words::picture_name(title, frames.len());
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
     if response.dragged() {
-        camera.turn(response.drag_delta());
+        camera.turn(response.drag_delta().into());
     }
     if response.double_clicked() {
         *camera = Orbit::default();

@@ -4,10 +4,10 @@ use egui::{Align, Button, Context, Frame, Id, Layout, Modal, Panel, Ui};
 
 use crate::app::{Command, Document};
 use crate::geometry::PoseNotation;
+use crate::report::figure::Orbit;
 use crate::session::edit::shown_numbers;
 use crate::session::{Edit, Session};
 use crate::text::conventions as words;
-use crate::ui::charts::Orbit;
 use crate::ui::save_picture::saveable;
 use crate::ui::widgets::{card_with_height, chip, number_text, primary_button};
 use crate::ui::{PanelContext, theme};

@@ -5,10 +5,10 @@ use egui_extras::Column;
 
 use crate::app::Document;
 use crate::geometry::{PoseNotation, Vec3};
+use crate::report::figure::Orbit;
 use crate::session::edit::shown_numbers;
 use crate::session::{EditRefusal, Session};
 use crate::text::conventions as words;
-use crate::ui::charts::Orbit;
 use crate::ui::theme;
 use crate::ui::widgets::tables::{self, head, number_cell, number_column, number_head};
 use crate::ui::widgets::{fixed, primary_button};

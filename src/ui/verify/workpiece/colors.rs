@@ -3,8 +3,10 @@
 use egui::Color32;
 
 use crate::app::workbench::scans::ExaminedScan;
+use crate::report::figure::palette;
 use crate::text::workpiece as words;
 use crate::ui::cloud::Legend;
+use crate::ui::theme;
 
 /// What the colours say.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -23,16 +25,6 @@ impl ColorBy {
         [(Self::Height, words::BY_HEIGHT), (Self::Region, words::BY_REGION), (Self::Distance, words::BY_DISTANCE)];
 }
 
-/// Colours of regions, safe for colour-blind eyes (Okabe–Ito), in the order of their use.
-const REGIONS: [Color32; 7] = [
-    Color32::from_rgb(0x00, 0x72, 0xb2),
-    Color32::from_rgb(0xd9, 0x7a, 0x00),
-    Color32::from_rgb(0x00, 0x9e, 0x73),
-    Color32::from_rgb(0xcc, 0x79, 0xa7),
-    Color32::from_rgb(0x56, 0xb4, 0xe9),
-    Color32::from_rgb(0xd5, 0x5e, 0x00),
-    Color32::from_rgb(0xc9, 0xb8, 0x2e),
-];
 /// Dark to light, as even to the eye as the well-known viridis.
 const HEIGHTS: [Color32; 5] = [
     Color32::from_rgb(0x46, 0x24, 0x7a),
@@ -47,7 +39,7 @@ const DISTANCES: [Color32; 3] =
 
 /// The colour of the so-many-th region.
 pub(super) fn region_color(idx: usize) -> Color32 {
-    REGIONS[idx % REGIONS.len()]
+    theme::color_of(palette::region_color(idx))
 }
 
 #[expect(

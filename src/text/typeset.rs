@@ -1,6 +1,26 @@
-//! As many digits as are true: values with their standard deviations.
+//! Numbers as they are typeset in the window and in figures: the true minus sign, and as many digits as are true.
 
-use crate::ui::widgets::{fixed, signed};
+/// `value` with a fixed number of decimals and the true minus sign; a dash where there is no finite value.
+#[must_use]
+pub fn fixed(value: f64, decimals: usize) -> String {
+    if !value.is_finite() {
+        return "–".to_owned();
+    }
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        // "-0.00" is nothing but rounding.
+        Some(digits) if digits.bytes().all(|byte| matches!(byte, b'0' | b'.')) => digits.to_owned(),
+        Some(digits) => format!("−{digits}"),
+        None => text,
+    }
+}
+
+/// As [`fixed`], with a plus sign before positive values, for differences.
+#[must_use]
+pub fn signed(value: f64, decimals: usize) -> String {
+    let text = fixed(value, decimals);
+    if text.starts_with(['−', '–']) { text } else { format!("+{text}") }
+}
 
 /// Decimals that show two significant digits of a standard deviation; three (micrometres) where it is not known.
 #[must_use]
@@ -42,5 +62,14 @@ mod tests {
         assert_eq!(with_std(-5.614, 0.55), "−5.61 ± 0.55");
         assert_eq!(std_text(12.3), "12");
         assert_eq!(std_text(0.0), "0.000");
+    }
+
+    #[test]
+    fn numbers_carry_a_true_minus_and_no_negative_zero() {
+        assert_eq!(fixed(-1.25, 1), "−1.2");
+        assert_eq!(fixed(-0.0004, 3), "0.000");
+        assert_eq!(fixed(f64::NAN, 3), "–");
+        assert_eq!(signed(0.5, 2), "+0.50");
+        assert_eq!(signed(-0.5, 2), "−0.50");
     }
 }

@@ -1,5 +1,7 @@
 //! `handeye import`: poses and profiles from elsewhere into a session file.
 
+mod bag;
+
 use std::fmt::Write as _;
 use std::io::Read as _;
 use std::path::PathBuf;
@@ -10,14 +12,16 @@ use clap::ValueEnum;
 use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
 use crate::geometry::{PoseConvention, PoseNotation, Tcp, Transform};
 use crate::session::import::{
-    ImportError, ImportOptions, Imported, Kind, MAX_FILE_BYTES, Part, Role, Separator, Source, read, read_paths,
-    with_stations,
+    BagOptions, ImportError, ImportOptions, Imported, Kind, MAX_FILE_BYTES, Part, Role, Separator, Source, read,
+    read_paths, with_stations,
 };
 use crate::session::{Edit, EditRefusal, Session, SetupField, Target, load, save};
 use crate::text::import_cli as text;
 use crate::watch::Unwatched;
 
 use super::{EXIT_WRONG_INPUT, fail};
+use crate::text::import_bag as bag_text;
+pub use bag::BagArgs;
 
 /// Arguments of `handeye import`.
 #[derive(Clone, Debug, clap::Args)]
@@ -26,8 +30,8 @@ pub struct ImportArgs {
     #[arg(required = true, value_name = "PATH")]
     pub paths: Vec<PathBuf>,
     /// The session file to write.
-    #[arg(long, value_name = "FILE")]
-    pub out: PathBuf,
+    #[arg(long, value_name = "FILE", required_unless_present = "list_topics")]
+    pub out: Option<PathBuf>,
     /// Overwrite it.
     #[arg(long)]
     pub force: bool,
@@ -49,6 +53,9 @@ pub struct ImportArgs {
     /// How the input is to be read.
     #[command(flatten)]
     pub reading: ReadingArgs,
+    /// How bags are to be read.
+    #[command(flatten)]
+    pub bag: BagArgs,
 }
 
 /// How the input is to be read; what is not said is recognised.
@@ -64,7 +71,7 @@ pub struct ReadingArgs {
     #[arg(long)]
     pub decimal_comma: bool,
     /// What the columns are: x,y,z,a,b,c (angles) or q1,q2,q3,q4, px,py,pz, label, side, edge, use, step, profile,
-    /// - for none.
+    /// notation, - for none.
     #[arg(long, value_parser = columns, value_name = "LIST")]
     pub columns: Option<Columns>,
     /// How three angles are written, as `pose_convention` of session files, e.g. kuka-abc.
@@ -207,9 +214,10 @@ fn columns(list: &str) -> Result<Columns, String> {
             "use" => Role::Used,
             "step" => Role::Step,
             "profile" => Role::Profile,
+            "notation" => Role::Notation,
             other => {
                 return Err(format!(
-                    "found {other}, expected x, y, z, a, b, c, q1 to q4, px, py, pz, label, side, edge, use, step, profile or -"
+                    "found {other}, expected x, y, z, a, b, c, q1 to q4, px, py, pz, label, side, edge, use, step, profile, notation or -"
                 ));
             }
         })
@@ -255,6 +263,7 @@ impl ReadingArgs {
             base_from_user_frame: self.base_from_user_frame.map(|numbers| numbers.0),
             profile_length_unit: self.profile_unit.map(LengthUnit::from),
             is_z_mirrored: self.mirror_z,
+            bag: BagOptions::default(),
         }
     }
 
@@ -304,14 +313,24 @@ pub fn run(args: &ImportArgs) -> ExitCode {
     }
 }
 
+/// The topics of the bags among the sources.
+fn topics(args: &ImportArgs) -> Result<String, String> {
+    let sources = sources(args).map_err(|error| error.to_string())?;
+    let bags = sources.iter().filter_map(|source| Some(bag_text::topics(&source.name, source.bag()?)));
+    let listed: String = bags.collect();
+    if listed.is_empty() { Err(text::no_bag(sources.first().map_or("-", |source| &source.name))) } else { Ok(listed) }
+}
+
 fn import(args: &ImportArgs) -> Result<String, String> {
-    let out = args.out.display().to_string();
-    let is_own = args.append_to.as_ref().is_some_and(|session| *session == args.out);
-    if args.out.exists() && !args.force && !is_own {
+    let Some(out_path) = args.out.as_ref().filter(|_| !args.bag.list_topics) else { return topics(args) };
+    let out = out_path.display().to_string();
+    let is_own = args.append_to.as_ref() == Some(out_path);
+    if out_path.exists() && !args.force && !is_own {
         return Err(text::out_exists(&out));
     }
     let sources = sources(args).map_err(|error| error.to_string())?;
-    let imported = read_as_told(&sources, &args.reading).map_err(|error| error.to_string())?;
+    let options = ImportOptions { bag: args.bag.options(), ..args.reading.options() };
+    let imported = read_as_told(&sources, &args.reading, &options).map_err(|error| error.to_string())?;
     if let Some(problem) = imported.problems.first()
         && (!args.skip_problems || imported.stations.is_empty())
     {
@@ -323,7 +342,7 @@ fn import(args: &ImportArgs) -> Result<String, String> {
     let mut said = listing(&imported);
     let num_without_edge = imported.stations.iter().filter(|station| station.edge.is_none()).count();
     let session = session(args, &sources, imported)?;
-    save(&session, &args.out).map_err(|error| error.to_string())?;
+    save(&session, out_path).map_err(|error| error.to_string())?;
     if session.target == Target::RightAnglePlate && num_without_edge > 0 {
         said.push_str(&text::edges_missing_line(num_without_edge));
     }
@@ -352,10 +371,9 @@ fn sources(args: &ImportArgs) -> Result<Vec<Source>, ImportError> {
 }
 
 /// Reads once to recognise, and again where the arguments say otherwise.
-fn read_as_told(sources: &[Source], args: &ReadingArgs) -> Result<Imported, ImportError> {
-    let options = args.options();
+fn read_as_told(sources: &[Source], args: &ReadingArgs, options: &ImportOptions) -> Result<Imported, ImportError> {
     let fallback = args.notation.map_or_else(PoseNotation::default, PoseNotation::of);
-    let imported = read(sources, &options, &fallback, &mut Unwatched)?;
+    let imported = read(sources, options, &fallback, &mut Unwatched)?;
     let recognised = imported.options.notation.unwrap_or(fallback);
     let Some(notation) = args.notation(&recognised) else { return Ok(imported) };
     // One notation is then that of all poses, so it must be the same whichever source it was recognised in.
@@ -368,7 +386,7 @@ fn read_as_told(sources: &[Source], args: &ReadingArgs) -> Result<Imported, Impo
         let first = parts.next().map(name).unwrap_or_default();
         return Err(ImportError::SeveralNotations { first, other: name(other) });
     }
-    read(sources, &ImportOptions { notation: Some(notation), ..options }, &fallback, &mut Unwatched)
+    read(sources, &ImportOptions { notation: Some(notation), ..options.clone() }, &fallback, &mut Unwatched)
 }
 
 fn listing(imported: &Imported) -> String {

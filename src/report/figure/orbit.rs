@@ -1,7 +1,5 @@
 //! From where something in space is seen: from all sides, without perspective, z up.
 
-use egui::Vec2;
-
 use crate::geometry::Vec3;
 
 /// A direction of view that goes round what is looked at.
@@ -35,12 +33,12 @@ impl Orbit {
     }
 
     /// Goes round as if what is seen were dragged by so many points on the screen.
-    pub fn turn(&mut self, drag: Vec2) {
+    pub fn turn(&mut self, [right, down]: [f32; 2]) {
         /// Radians a point: a drag across a picture is about half a turn.
         const TURN: f64 = 0.01;
-        self.yaw = (self.yaw - f64::from(drag.x) * TURN).rem_euclid(std::f64::consts::TAU);
+        self.yaw = (self.yaw - f64::from(right) * TURN).rem_euclid(std::f64::consts::TAU);
         let top = std::f64::consts::FRAC_PI_2;
-        self.pitch = (self.pitch + f64::from(drag.y) * TURN).clamp(-top, top);
+        self.pitch = (self.pitch + f64::from(down) * TURN).clamp(-top, top);
     }
 
     /// The directions to the right, up, and towards the eye.
@@ -64,14 +62,12 @@ impl Orbit {
 
 #[cfg(test)]
 mod tests {
-    use egui::vec2;
-
     use super::*;
 
     #[test]
     fn axes_are_perpendicular_and_z_points_up() {
         let mut orbit = Orbit::new(-0.9, 0.55);
-        for drag in [vec2(0.0, 0.0), vec2(33.0, 21.0), vec2(-700.0, 900.0), vec2(5.0, -2000.0)] {
+        for drag in [[0.0, 0.0], [33.0, 21.0], [-700.0, 900.0], [5.0, -2000.0]] {
             orbit.turn(drag);
             let [right, up, towards] = orbit.axes();
             assert!((right.cross(&up) - towards).norm() < 1e-12);

@@ -1,0 +1,45 @@
+//! Which plots stand on a page: one figure or a few for each question, from what was computed of a session.
+
+mod arcs;
+mod bars;
+mod methods;
+mod other_data;
+mod reliance;
+mod setup;
+mod sheet;
+mod space;
+mod workpiece;
+
+use crate::report::evidence::Evidence;
+use crate::text::figures as words;
+
+use super::Figure;
+
+/// The figures that the data allow, in the order of a report: the set-up, what was measured, what the methods made of it, how
+/// far that can be relied on, what it is worth on other data, and the parts that were scanned.
+#[must_use]
+pub fn figures_of(evidence: &Evidence) -> Vec<Figure> {
+    let mut figures = setup::figures(evidence);
+    let has_several = evidence.targets.len() > 1;
+    for (target, number) in evidence.targets.iter().zip(1..) {
+        let of_target = [arcs::figures, methods::figures, reliance::figures].into_iter().flat_map(|make| make(target));
+        figures.extend(of_target.map(|figure| match has_several {
+            true => Figure {
+                id: format!("target-{number}-{}", figure.id),
+                title: words::of_target(&figure.title, &target.name),
+                alt: words::of_target(&figure.alt, &target.name),
+                ..figure
+            },
+            false => figure,
+        }));
+    }
+    figures.extend(evidence.verification.iter().flat_map(other_data::figures));
+    let has_several = evidence.parts.len() > 1;
+    for (part, number) in evidence.parts.iter().zip(1..) {
+        figures.extend(workpiece::figures(part).into_iter().map(|figure| match has_several {
+            true => Figure { id: format!("part-{number}-{}", figure.id), ..figure },
+            false => figure,
+        }));
+    }
+    figures
+}

@@ -1,0 +1,188 @@
+//! The set-up in space: base, flange poses, laser planes and the target; and the way of the flange.
+
+use crate::calibrate::{Mount, PlateFound, Solution};
+use crate::geometry::{Rigid, Vec3};
+use crate::report::evidence::{Evidence, TargetEvidence};
+use crate::report::figure::ink::Stroke;
+use crate::report::figure::model::ball_radius_mm;
+use crate::report::figure::palette::{self, Marker, Rgb, method_color};
+use crate::report::figure::plot::{Axis, Dash, Entry, Mark, Note, NoteSide, Plot, Sign};
+use crate::report::figure::{Extent, Figure};
+use crate::session::{Reading, Session, Target};
+use crate::text::figures as words;
+
+use super::sheet::Sheet;
+use super::space::{Scene, Triad};
+
+/// More stations than this are not all named.
+const MOST_NAMED: usize = 24;
+/// More laser planes than this hide each other.
+const MOST_LASER_PLANES: usize = 40;
+
+/// The figures of the set-up.
+pub(super) fn figures(evidence: &Evidence) -> Vec<Figure> {
+    sketch(evidence).into_iter().chain(trajectory(&evidence.session)).collect()
+}
+
+/// The first pose of each enabled station.
+fn first_poses(session: &Session) -> impl Iterator<Item = (usize, &str, &Rigid)> {
+    session.stations.iter().enumerate().filter(|(_, station)| station.enabled).filter_map(|(idx, station)| {
+        Some((idx, station.label.as_str(), station.captures.first()?.base_from_flange.rigid()))
+    })
+}
+
+fn sketch(evidence: &Evidence) -> Option<Figure> {
+    let (target, solution) = evidence.answer()?;
+    let session = &target.session;
+    let poses: Vec<(usize, &str, &Rigid)> = first_poses(session).collect();
+    if poses.is_empty() {
+        return None;
+    }
+    let mut scene = Scene::default();
+    let sensor = solution.flange_from_sensor.rigid();
+    let in_base = |pose: &Rigid, point: Vec3| (pose * nalgebra::Point3::from(point)).coords;
+    let is_fixed = solution.mount == Mount::Fixed;
+    scene.triad(&Rigid::identity(), Triad { name: Some(words::BASE), is_strong: true });
+    for (place, (idx, label, pose)) in poses.iter().enumerate() {
+        let name = (poses.len() <= MOST_NAMED).then_some(*label);
+        scene.triad(pose, Triad { name, is_strong: false });
+        let base_from_sensor = if is_fixed { *sensor } else { **pose * *sensor };
+        if place < MOST_LASER_PLANES && (place == 0 || !is_fixed) {
+            if let Some(line) = laser_line(target, *idx) {
+                let ends = line.map(|end| in_base(&base_from_sensor, end));
+                scene.laser_plane(base_from_sensor.translation.vector, ends);
+            }
+        }
+        if is_fixed {
+            mark_target(&mut scene, session, solution, Some(pose));
+        }
+    }
+    if !is_fixed {
+        mark_target(&mut scene, session, solution, None);
+    }
+    let mut sheet = Sheet::new(330.0);
+    let legend = [
+        Entry::new(Sign::Line(Dash::Solid), palette::AXES[0], "x"),
+        Entry::new(Sign::Line(Dash::Solid), palette::AXES[1], "y"),
+        Entry::new(Sign::Line(Dash::Solid), palette::AXES[2], "z"),
+        Entry::new(Sign::Solid(Marker::Circle), palette::TEXT, words::FLANGE),
+        Entry::new(Sign::Bar(crate::report::figure::plot::Filling::Faint), palette::OUTLIER, words::LASER_PLANE),
+        Entry::new(Sign::Line(Dash::Solid), method_color(solution.method), words::target(&session.target)),
+    ];
+    let area = sheet.legend(&legend);
+    scene.draw(&area, sheet.page());
+    let title = words::setup_title(&session.target, poses.len(), is_fixed);
+    Some(sheet.figure("setup", title.clone(), title))
+}
+
+/// The ends of what the laser line lights at a station's first capture, in the sensor frame, mm.
+fn laser_line(target: &TargetEvidence, station_idx: usize) -> Option<[Vec3; 2]> {
+    match &target.session.stations.get(station_idx)?.captures.first()?.reading {
+        Reading::Point(point) => {
+            let half = Vec3::new(0.12 * point.norm().max(1.0), 0.0, 0.0);
+            Some([*point - half, *point + half])
+        }
+        Reading::Profile(profile) => {
+            let (mut range, mut sum, mut count) = ([f64::INFINITY, f64::NEG_INFINITY], 0.0, 0.0);
+            for (_, x, z) in profile.valid_points() {
+                range = [range[0].min(x), range[1].max(x)];
+                sum += z;
+                count += 1.0;
+            }
+            let z = sum / count;
+            (count > 1.0 && z.is_finite()).then(|| range.map(|x| Vec3::new(x, 0.0, z)))
+        }
+    }
+}
+
+/// The target where the calibration has it; on a flange that carries it, at a pose.
+fn mark_target(scene: &mut Scene, session: &Session, solution: &Solution, pose: Option<&Rigid>) {
+    let color = method_color(solution.method);
+    let place = |point: Vec3| pose.map_or(point, |pose| (pose * nalgebra::Point3::from(point)).coords);
+    match (&session.target, &solution.plate) {
+        (_, Some(plate)) => scene.plate(plate_corners(plate).map(place), color),
+        (Target::Ball { .. }, None) => {
+            scene.ball(place(solution.target_in_base_mm), ball_radius_mm(session).unwrap_or(0.0), color);
+        }
+        _ => scene.point(place(solution.target_in_base_mm), color),
+    }
+}
+
+/// The ends of edge p, the corner, and the end of edge q, as far as the points reach, in the base.
+fn plate_corners(plate: &PlateFound) -> [Vec3; 3] {
+    let base_from_plate = &plate.base_from_plate;
+    let in_plate = plate
+        .points
+        .iter()
+        .map(|point| base_from_plate.inverse_transform_point(&nalgebra::Point3::from(point.point_in_base_mm)).coords);
+    let reach = in_plate.fold([1.0_f64; 2], |[x, y], point| [x.max(point.x), y.max(point.y)]);
+    [Vec3::new(reach[0], 0.0, 0.0), Vec3::zeros(), Vec3::new(0.0, reach[1], 0.0)]
+        .map(|corner| (base_from_plate * nalgebra::Point3::from(corner)).coords)
+}
+
+/// The positions of the flange from above and from the side, in the order of capture.
+fn trajectory(session: &Session) -> Option<Figure> {
+    let enabled = session.stations.iter().filter(|station| station.enabled);
+    let paths: Vec<(&str, Vec<Vec3>)> = enabled
+        .map(|station| {
+            let positions = station.captures.iter().map(|capture| capture.base_from_flange.translation_mm());
+            (
+                station.label.as_str(),
+                positions.filter(|position| position.iter().all(|value| value.is_finite())).collect(),
+            )
+        })
+        .filter(|(_, path): &(_, Vec<Vec3>)| !path.is_empty())
+        .collect();
+    let num_captures: usize = paths.iter().map(|(_, path)| path.len()).sum();
+    if num_captures < 2 {
+        return None;
+    }
+    let has_sweeps = paths.iter().any(|(_, path)| path.len() > 1);
+    let mut legend = vec![
+        Entry::new(Sign::Solid(Marker::Circle), palette::INLIER, words::FIRST_CAPTURE),
+        Entry::new(Sign::Line(Dash::Dotted), palette::TEXT_DIM, words::FROM_STATION_TO_STATION),
+    ];
+    if has_sweeps {
+        legend.push(Entry::new(Sign::Line(Dash::Solid), palette::FIT, words::FURTHER_CAPTURES));
+    }
+    let mut sheet = Sheet::new(270.0);
+    let areas = sheet.legend_over_columns(&legend);
+    let mut views = Vec::new();
+    for (axes, y_title) in [([0, 1], words::FLANGE_Y_AXIS), ([0, 2], words::FLANGE_Z_AXIS)] {
+        let at = |position: &Vec3| axes.map(|axis: usize| position[axis]);
+        let mut extent = Extent::NOTHING;
+        for position in paths.iter().flat_map(|(_, path)| path) {
+            extent.include(at(position)[0], at(position)[1]);
+        }
+        let mut plot = Plot::new(Axis::new(words::FLANGE_X_AXIS), Axis::new(y_title), extent);
+        plot.has_equal_scales = true;
+        let way: Vec<[f64; 2]> = paths.iter().map(|(_, path)| at(&path[0])).collect();
+        let stroke = Stroke::new(0.7, palette::UNUSED);
+        plot.mark(Mark::Line { points: way.clone(), stroke, dash: Dash::Dotted });
+        for (_, path) in &paths {
+            let points = path.iter().map(at).collect();
+            plot.mark(Mark::Line { points, stroke: Stroke::new(1.2, palette::FIT), dash: Dash::Solid });
+        }
+        let stroke = Stroke::new(0.5, Rgb::WHITE);
+        let fill = Some(palette::INLIER);
+        plot.mark(Mark::Markers { points: way.clone(), shape: Marker::Circle, radius: 2.4, fill, stroke });
+        if paths.len() <= MOST_NAMED {
+            plot.notes = paths
+                .iter()
+                .zip(way)
+                .map(|((label, _), at)| Note {
+                    at,
+                    text: (*label).to_owned(),
+                    color: palette::TEXT,
+                    side: NoteSide::Right,
+                })
+                .collect();
+        }
+        views.push(plot);
+    }
+    for (plot, area) in views.iter().zip(areas) {
+        sheet.plot(plot, &area);
+    }
+    let title = words::trajectory_title(paths.len(), num_captures);
+    Some(sheet.figure("trajectory", title.clone(), title))
+}

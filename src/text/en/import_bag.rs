@@ -1,0 +1,143 @@
+//! Wording of imports from ROS 2 bags, in the window and on the command line.
+
+use crate::geometry::notation::LengthUnit;
+use crate::session::import::bag::{Bag, BagReport, Clock, MessageKind, ProfileAxes, Taking, Topic};
+
+use super::shell::count;
+
+/// Heading.
+pub const BAG: &str = "Bag";
+/// Row.
+pub const POSE_TOPIC: &str = "poses from";
+/// Row.
+pub const PROFILE_TOPIC: &str = "profiles from";
+/// Row.
+pub const BASE_FRAME: &str = "base frame";
+/// Row.
+pub const FLANGE_FRAME: &str = "flange frame";
+/// Row.
+pub const TAKING: &str = "take";
+/// Row.
+pub const AXES: &str = "x, z of profiles";
+/// Row.
+pub const CLOCK: &str = "times";
+/// Row.
+pub const PAIR_WITHIN: &str = "pair within ms";
+/// Row.
+pub const STILL_FOR: &str = "still for s";
+/// Row.
+pub const STILL_WITHIN_MM: &str = "within mm";
+/// Row.
+pub const STILL_WITHIN_DEG: &str = "within °";
+/// Why a number is not taken.
+pub const NEGATIVE: &str = "type a number from 0 on";
+/// Where a bag has no such topic.
+pub const NO_TOPIC: &str = "none";
+
+/// What becomes a capture.
+#[must_use]
+pub const fn taking(taking: Taking) -> &'static str {
+    match taking {
+        Taking::SettledMedian => "stays, median profile",
+        Taking::SettledFirst => "stays, first profile",
+        Taking::EveryProfile => "every profile, as a scan",
+    }
+}
+
+/// Which time counts.
+#[must_use]
+pub const fn clock(clock: Clock) -> &'static str {
+    match clock {
+        Clock::Header => "of the headers",
+        Clock::Recording => "of the recording",
+    }
+}
+
+/// Which axes of the messages are those of the profiles, and their unit.
+#[must_use]
+pub fn axes(axes: ProfileAxes, unit: LengthUnit) -> String {
+    format!("x and z of the profiles are {} and {} of the messages, in {}", axes.x, axes.z, unit.symbol())
+}
+
+/// What a topic gives.
+#[must_use]
+pub const fn gives(kind: Option<MessageKind>) -> &'static str {
+    match kind {
+        Some(MessageKind::Pose) => "poses",
+        Some(MessageKind::Transforms) => "frames, from which poses",
+        Some(MessageKind::LaserScan | MessageKind::PointCloud) => "profiles",
+        None => "not read",
+    }
+}
+
+/// A topic in a line.
+#[must_use]
+pub fn topic_line(topic: &Topic) -> String {
+    let Topic { name, type_name, kind, num_messages } = topic;
+    format!("  {name}  {type_name}  {num_messages}  {}\n", gives(*kind))
+}
+
+/// The topics of a bag.
+#[must_use]
+pub fn topics(name: &str, bag: &Bag) -> String {
+    let lines: String = bag.topics.iter().map(topic_line).collect();
+    format!("{name}: {}\n{lines}", count(bag.topics.len(), "topic"))
+}
+
+/// What became of the messages of a bag.
+#[must_use]
+pub fn report(report: &BagReport) -> String {
+    let frames = report.frames.as_ref().map(|[base, flange]| format!(", {flange} in {base}")).unwrap_or_default();
+    let mut said = vec![format!("{} from {}{frames}", count(report.num_poses, "pose"), report.pose_topic)];
+    if let Some(num_stays) = report.num_stays {
+        said.push(format!("the robot stood still {}", times(num_stays)));
+    }
+    if let Some(topic) = &report.profile_topic {
+        said.push(format!("{} from {topic}, {} paired", count(report.num_profiles, "profile"), report.num_paired));
+    }
+    let mut left_out = Vec::new();
+    if report.num_moving > 0 {
+        left_out.push(format!("{} taken while the robot moved", count(report.num_moving, "profile")));
+    }
+    if report.num_without_pose > 0 {
+        let nearest = match report.nearest_pose_ms {
+            // A clock that is off by more than a day is another clock.
+            Some(ms) if ms > 86_400_000 => {
+                "; the clocks of poses and profiles differ: use the times of the recording".to_owned()
+            }
+            Some(ms) => format!("; the nearest is {ms} ms away"),
+            None => String::new(),
+        };
+        left_out.push(format!("{} without a pose in reach{nearest}", count(report.num_without_pose, "profile")));
+    }
+    if report.num_stays_without_profile > 0 {
+        left_out.push(format!("{} without a profile", count(report.num_stays_without_profile, "stay")));
+    }
+    if report.num_beyond > 0 {
+        left_out.push(format!("{} beyond what is kept: cut the bag into parts", count(report.num_beyond, "message")));
+    }
+    for unreadable in &report.unreadable {
+        let messages = count(unreadable.num_messages, "message");
+        left_out.push(format!("{messages} of {} that could not be read ({})", unreadable.topic, unreadable.first));
+    }
+    let mut sentence = said.join("; ");
+    if !left_out.is_empty() {
+        sentence.push_str(". Left out: ");
+        sentence.push_str(&left_out.join("; "));
+    }
+    let cut_short = report.cut_short.iter().map(|(file, damage)| {
+        format!(
+            ". {file} is damaged or was cut off ({damage}): what stands before was read; \
+             mend it with `mcap recover` or `ros2 bag reindex`, or record it again"
+        )
+    });
+    sentence.extend(cut_short);
+    sentence
+}
+
+fn times(number: usize) -> String {
+    match number {
+        1 => "once".to_owned(),
+        number => format!("{number} times"),
+    }
+}
