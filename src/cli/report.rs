@@ -89,7 +89,8 @@ fn reported(args: &ReportArgs) -> Result<(String, Option<String>), Refusal> {
     let nothing = |error: &dyn std::fmt::Display| (EXIT_NOTHING_COMPUTED, error.to_string());
     let evidence = Evidence::gather(&session, &given, &mut Unwatched).map_err(|cancelled| nothing(&cancelled))?;
     let document = document(&evidence, &inputs, &options(args));
-    let written = write_files(&report_files(&document, &evidence), &args.out).map_err(|error| wrong(&error))?;
+    let files = report_files(&document, &evidence).map_err(|error| nothing(&error))?;
+    let written = write_files(&files, &args.out).map_err(|error| wrong(&error))?;
     let mut said: String = written.iter().map(|path| words::wrote(&path.display().to_string())).collect();
     if args.pdf {
         said.push_str(&match pdf::print(&args.out.join(HTML)) {

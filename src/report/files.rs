@@ -1,8 +1,9 @@
 //! The files of a report, and the folder that they are written into.
 
-use std::io::Write as _;
+use std::io::{Cursor, Write as _};
 use std::path::{Path, PathBuf};
 
+use image::ImageFormat;
 use thiserror::Error;
 
 use crate::whole_file;
@@ -10,6 +11,7 @@ use crate::whole_file;
 use super::csv_tables::csv_table;
 use super::document::{Document, exports};
 use super::evidence::Evidence;
+use super::figure::{Figure, FigureError};
 use super::html::html;
 use super::markdown::markdown;
 use super::result_file::result_file;
@@ -22,6 +24,10 @@ pub const MARKDOWN: &str = "report.md";
 pub const RESULT: &str = "result.json";
 /// The folder of the tables.
 pub const TABLES: &str = "tables";
+/// The folder of the figures.
+pub const FIGURES: &str = "figures";
+/// Pixels of a figure for programs that take no SVG: 144 an inch.
+const PIXELS_PER_POINT: f64 = 2.0;
 
 /// A file of a report.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -55,17 +61,37 @@ pub enum ReportError {
 
 /// Every file of a report: the page, the same as Markdown, the tables, the result file and the texts for the controller.
 /// Which tables there are follows from the document's sections.
-#[must_use]
-pub fn report_files(document: &Document, evidence: &Evidence) -> Vec<ReportFile> {
+///
+/// # Errors
+/// [`FigureError`] if a figure cannot be drawn.
+pub fn report_files(document: &Document, evidence: &Evidence) -> Result<Vec<ReportFile>, FigureError> {
     let file = |path: String, text: String| ReportFile { path, bytes: text.into_bytes() };
     let mut files = vec![
-        file(HTML.to_owned(), html(document)),
+        file(HTML.to_owned(), html(document)?),
         file(MARKDOWN.to_owned(), markdown(document)),
         file(RESULT.to_owned(), result(evidence)),
     ];
     files.extend(document.tables().map(|table| file(format!("{TABLES}/{}.csv", table.id), csv_table(table))));
+    for figure in document.figures() {
+        files.push(file(figure_path(figure, "svg"), figure.svg()?));
+        files.push(ReportFile { path: figure_path(figure, "png"), bytes: png(figure)? });
+    }
     files.extend(exports(evidence).into_iter().map(|export| file(export.path, export.text)));
-    files
+    Ok(files)
+}
+
+/// Where a figure's file is, below the report's folder.
+pub(super) fn figure_path(figure: &Figure, extension: &str) -> String {
+    format!("{FIGURES}/{}.{extension}", figure.id)
+}
+
+fn png(figure: &Figure) -> Result<Vec<u8>, FigureError> {
+    let mut bytes = Vec::new();
+    figure
+        .png(PIXELS_PER_POINT)?
+        .write_to(&mut Cursor::new(&mut bytes), ImageFormat::Png)
+        .map_err(|error| FigureError::NotDrawn { reason: error.to_string() })?;
+    Ok(bytes)
 }
 
 /// What `solve --json` prints of the session's own target.

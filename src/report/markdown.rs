@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use crate::text::diagnosis::{severity_mark, severity_name};
 
 use super::document::{Block, Cell, Document, Fact, Finding, Table, Verdict};
+use super::files::figure_path;
 
 /// The whole report. Writing to a string does not fail, hence the `ok()`s.
 #[must_use]
@@ -27,6 +28,14 @@ fn write_block(out: &mut String, block: &Block) {
         Block::Verdict(verdict) => Some(write_verdict(out, verdict)),
         Block::Facts(facts) => Some(write_facts(out, facts)),
         Block::Table(table) => Some(write_table(out, table)),
+        Block::Figure(figure) => writeln!(
+            out,
+            "**{}**\n\n![{}]({})",
+            escaped(&figure.title),
+            escaped(&figure.alt),
+            figure_path(figure, "svg")
+        )
+        .ok(),
         Block::Code { caption, text } => Some(write_code(out, caption, text)),
         Block::Findings(findings) => Some(findings.iter().for_each(|finding| write_finding(out, finding))),
         Block::Signature(lines) => Some(write_facts(out, lines)),

@@ -7,6 +7,7 @@ mod sections;
 use crate::text::report as words;
 
 use super::evidence::Evidence;
+use super::figure::figures_of;
 
 pub use model::{Block, Cell, Column, Document, Fact, Finding, Section, Table, Verdict, typeset};
 pub use section::{Options, SectionId};
@@ -41,7 +42,7 @@ pub fn document(evidence: &Evidence, inputs: &[InputFile], options: &Options) ->
         SectionId::Calibration => sections::calibration::blocks(evidence),
         SectionId::Setup => sections::setup::blocks(evidence, options),
         SectionId::Methods => sections::methods::blocks(evidence),
-        SectionId::Figures => Vec::new(),
+        SectionId::Figures => figures_of(evidence).into_iter().map(Block::Figure).collect(),
         SectionId::Diagnosis => sections::diagnosis::blocks(evidence),
         SectionId::Validation => sections::validation::blocks(evidence),
         SectionId::Verification => sections::verification::blocks(evidence),

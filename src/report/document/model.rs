@@ -5,6 +5,8 @@ use crate::calibrate;
 use crate::diagnose::Severity;
 use crate::text::digits;
 
+use crate::report::figure::Figure;
+
 use super::SectionId;
 
 /// A report.
@@ -23,6 +25,14 @@ impl Document {
     pub fn tables(&self) -> impl Iterator<Item = &Table> {
         self.blocks().filter_map(|block| match block {
             Block::Table(table) => Some(table),
+            _ => None,
+        })
+    }
+
+    /// Every figure, in order.
+    pub fn figures(&self) -> impl Iterator<Item = &Figure> {
+        self.blocks().filter_map(|block| match block {
+            Block::Figure(figure) => Some(figure),
             _ => None,
         })
     }
@@ -57,6 +67,8 @@ pub enum Block {
     Facts(Vec<Fact>),
     /// Figures in rows and columns.
     Table(Table),
+    /// A drawing.
+    Figure(Figure),
     /// Text to be copied as it stands.
     Code {
         /// What it is.
@@ -73,7 +85,7 @@ pub enum Block {
 /// Good, usable or not usable, and why.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
-    /// The verdict; `None` where nothing could be computed.
+    /// The verdict; `None` where there was nothing to be judged.
     pub rating: Option<calibrate::Verdict>,
     /// It in words.
     pub name: String,

@@ -25,10 +25,10 @@ pub enum SectionId {
     Verification,
     /// Every station.
     Stations,
-    /// For the controller.
-    ToolFrames,
     /// Files, checksums, the program's version.
     Inputs,
+    /// For the controller.
+    ToolFrames,
     /// Where the methods are described.
     References,
     /// The place to sign.
@@ -47,8 +47,8 @@ impl SectionId {
         Self::Validation,
         Self::Verification,
         Self::Stations,
-        Self::ToolFrames,
         Self::Inputs,
+        Self::ToolFrames,
         Self::References,
         Self::Signature,
     ];

@@ -8,6 +8,7 @@ use crate::text::diagnosis::{severity_mark, severity_name};
 use crate::text::report as words;
 
 use super::document::{Block, Cell, Column, Document, Fact, Finding, Table, Verdict};
+use super::figure::{Figure, FigureError};
 
 /// The style sheet, within the file.
 const STYLE: &str = include_str!("report.css");
@@ -15,10 +16,18 @@ const STYLE: &str = include_str!("report.css");
 const DENSE_ABOVE: usize = 10;
 /// Tables with fewer rows stay on one page.
 const KEPT_TOGETHER_BELOW: usize = 16;
+/// So do texts with fewer lines.
+const CODE_KEPT_TOGETHER_BELOW: usize = 40;
+/// Small tables with so few columns stand beside each other.
+const BESIDE_UP_TO: usize = 4;
+/// So short a label stays on one line, however narrow its column.
+const SHORT_LABEL: usize = 12;
 
 /// The whole report. Writing to a string does not fail, hence the `ok()`s.
-#[must_use]
-pub fn html(document: &Document) -> String {
+///
+/// # Errors
+/// [`FigureError`] if a figure cannot be drawn.
+pub fn html(document: &Document) -> Result<String, FigureError> {
     let title = escaped(&document.title);
     let mut out = format!(
         "<!DOCTYPE html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\"/>\n\
@@ -37,12 +46,12 @@ pub fn html(document: &Document) -> String {
         writeln!(out, "<section id=\"{id}\" aria-labelledby=\"{id}-title\">").ok();
         writeln!(out, "<h2 id=\"{id}-title\">{}</h2>", escaped(&section.title)).ok();
         for block in &section.blocks {
-            write_block(&mut out, block);
+            write_block(&mut out, block)?;
         }
         out.push_str("</section>\n");
     }
     out.push_str("</main>\n</body>\n</html>\n");
-    out
+    Ok(out)
 }
 
 /// Links to the sections, for the screen.
@@ -54,23 +63,40 @@ fn contents(out: &mut String, document: &Document) {
     out.push_str("</nav>\n");
 }
 
-fn write_block(out: &mut String, block: &Block) {
+fn write_block(out: &mut String, block: &Block) -> Result<(), FigureError> {
     match block {
         Block::Heading(title) => writeln!(out, "<h3>{}</h3>", escaped(title)).ok(),
         Block::Paragraph(text) => writeln!(out, "<p>{}</p>", escaped(text)).ok(),
         Block::Verdict(verdict) => Some(write_verdict(out, verdict)),
         Block::Facts(facts) => Some(write_facts(out, facts)),
         Block::Table(table) => Some(write_table(out, table)),
-        Block::Code { caption, text } => writeln!(
-            out,
-            "<figure class=\"code\"><figcaption>{}</figcaption><pre>{}</pre></figure>",
-            escaped(caption),
-            escaped(text)
-        )
-        .ok(),
+        Block::Figure(figure) => Some(write_figure(out, figure)?),
+        Block::Code { caption, text } => Some(write_code(out, caption, text)),
         Block::Findings(findings) => Some(write_findings(out, findings)),
         Block::Signature(lines) => Some(write_signature(out, lines)),
     };
+    Ok(())
+}
+
+/// The drawing itself stands in the page; its text says what it is.
+fn write_figure(out: &mut String, figure: &Figure) -> Result<(), FigureError> {
+    let svg = figure.svg()?;
+    // In a page there is no declaration before it.
+    let svg = svg.find("<svg").map_or(svg.as_str(), |start| &svg[start..]);
+    writeln!(
+        out,
+        "<figure class=\"figure\"><figcaption>{}</figcaption>{}</figure>",
+        escaped(&figure.title),
+        svg.trim()
+    )
+    .ok();
+    Ok(())
+}
+
+fn write_code(out: &mut String, caption: &str, text: &str) {
+    let class = if text.lines().count() < CODE_KEPT_TOGETHER_BELOW { "code together" } else { "code" };
+    let (caption, text) = (escaped(caption), escaped(text));
+    writeln!(out, "<figure class=\"{class}\"><figcaption>{caption}</figcaption><pre>{text}</pre></figure>").ok();
 }
 
 fn write_verdict(out: &mut String, verdict: &Verdict) {
@@ -145,14 +171,18 @@ fn write_signature(out: &mut String, lines: &[Fact]) {
 }
 
 fn write_table(out: &mut String, table: &Table) {
-    let mut classes = Vec::new();
-    if table.columns.len() > DENSE_ABOVE {
-        classes.push("dense");
-    }
-    if table.rows.len() < KEPT_TOGETHER_BELOW {
-        classes.push("together");
-    }
-    writeln!(out, "<div class=\"table\">\n<table class=\"{}\">\n<caption>{}</caption>", classes.join(" "), escaped(&table.title)).ok();
+    let is_short = table.rows.len() < KEPT_TOGETHER_BELOW;
+    let is_beside = is_short && table.columns.len() <= BESIDE_UP_TO;
+    let classes = [
+        Some("table"),
+        (table.columns.len() > DENSE_ABOVE).then_some("dense"),
+        is_short.then_some("together"),
+        is_beside.then_some("beside"),
+    ];
+    let classes: Vec<&str> = classes.into_iter().flatten().collect();
+    let (id, title) = (escaped(&table.id), escaped(&table.title));
+    writeln!(out, "<div class=\"{}\">\n<p class=\"title\" id=\"table-{id}\">{title}</p>", classes.join(" ")).ok();
+    writeln!(out, "<table aria-labelledby=\"table-{id}\">").ok();
     out.push_str("<thead>\n");
     write_groups(out, &table.columns);
     out.push_str("<tr>");
@@ -219,7 +249,8 @@ fn write_cell(out: &mut String, table: &Table, idx: usize, cell: &Cell, longest_
     let class = class(&table.columns, idx);
     // The first column says which row it is.
     if idx == 0 && !column.is_number {
-        write!(out, "<th scope=\"row\">{text}</th>").ok();
+        let class = if cell.text.chars().count() <= SHORT_LABEL { " class=\"short\"" } else { "" };
+        write!(out, "<th scope=\"row\"{class}>{text}</th>").ok();
     } else {
         write!(out, "<td{class}>{text}</td>").ok();
     }
@@ -261,11 +292,12 @@ fn escaped(text: &str) -> String {
     out
 }
 
-/// Text in a string of a style sheet: everything but letters and digits by its number.
+/// Text in a string of a style sheet: everything but letters and digits by its number, blanks too, as one after a number
+/// would be taken for its end.
 fn in_css(text: &str) -> String {
     let mut out = String::new();
     for c in text.chars() {
-        if c.is_ascii_alphanumeric() || c == ' ' {
+        if c.is_ascii_alphanumeric() {
             out.push(c);
         } else {
             write!(out, "\\{:06x}", u32::from(c)).ok();

@@ -23,7 +23,7 @@ pub const DIAGNOSIS: &str = "Diagnosis";
 /// Section.
 pub const VALIDATION: &str = "Validation";
 /// Section.
-pub const VERIFICATION: &str = "Verification on other data";
+pub const VERIFICATION: &str = "Verification";
 /// Section.
 pub const STATIONS: &str = "Stations";
 /// Section.
@@ -46,11 +46,10 @@ pub const CONTENTS: &str = "Contents";
 
 /// In place of a verdict.
 pub const NO_CALIBRATION: &str = "No calibration";
-/// Its shape.
-pub const NO_CALIBRATION_MARK: &str = "✖";
+/// The shape of no verdict.
+pub const NO_VERDICT_MARK: &str = "–";
 /// A part was measured without one.
-pub const PART_MEASURED: &str =
-    "No calibration was to be computed: the scanned part was measured, see “Verification on other data”.";
+pub const PART_MEASURED: &str = "The scanned parts were measured, see “Verification”.";
 
 /// What the headline's figure is about.
 #[must_use]
@@ -142,15 +141,15 @@ pub const fn transform_name(mount: Mount) -> &'static str {
 /// Title of a table.
 #[must_use]
 pub fn matrix_title(mount: Mount) -> String {
-    format!("{} as a homogeneous matrix", transform_name(mount))
+    format!("{}, homogeneous matrix", transform_name(mount))
 }
 
 /// Title of a table.
-pub const QUATERNION_TITLE: &str = "The same rotation as a unit quaternion, real part first";
+pub const QUATERNION_TITLE: &str = "Unit quaternion, real part first";
 /// Title of a table.
 #[must_use]
 pub fn six_numbers_title(label: &str) -> String {
-    format!("The same as six numbers: x y z and {label}")
+    format!("x y z and {label}")
 }
 
 /// Head of a column.
@@ -225,6 +224,10 @@ pub const CAPTURES: &str = "Captures in use";
 pub const LEFT_OUT: &str = "Stations left out";
 /// Name of a fact.
 pub const SCANS: &str = "Scanned parts";
+/// Name of a fact.
+pub const FURTHER_TARGET: &str = "Further target";
+/// Name of a fact.
+pub const IF_RADIUS: &str = "If the radius is wrong";
 /// Name of a fact.
 pub const NOTES: &str = "Notes of the session";
 /// Name of a fact.
@@ -407,7 +410,7 @@ pub const fn stability_title(is_touched: bool) -> &'static str {
     if is_touched {
         "A known point measured many times: measured − touched"
     } else {
-        "A point measured many times: measured − mean"
+        "The point measured many times: scatter about its mean"
     }
 }
 
@@ -484,7 +487,7 @@ pub fn part_heading(name: &str) -> String {
 /// What was scanned and how it is seen.
 #[must_use]
 pub fn part_line(num_points: &str, num_profiles: usize, calibration: &str) -> String {
-    format!("{num_points} points in {num_profiles} profile{}, seen through {calibration}.", plural(num_profiles))
+    format!("{num_points} points in {num_profiles} profile{}; calibration: {calibration}.", plural(num_profiles))
 }
 
 /// Title of a table.
@@ -505,6 +508,12 @@ pub const DRAWN: &str = "distances of points drawn / mm";
 pub const NO_PLANES: &str = "No plane was found that holds 4 % of the points.";
 /// Title of a table.
 pub const ANGLES: &str = "Angles between the planes";
+/// Name of a fact.
+pub const PITCHES: &str = "Pitch";
+/// Name of a fact.
+pub const HEIGHTS: &str = "Height";
+/// Head of a column.
+pub const ANGLE_WITH_STD: &str = "angle ± 1 σ";
 /// Head of a column.
 pub const PLANES_OF_ANGLE: &str = "planes";
 /// Title of a table.

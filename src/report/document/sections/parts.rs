@@ -110,7 +110,7 @@ fn angles(regions: &[Region], known: &Known, suffix: &str) -> Option<Block> {
             title: words::ANGLES.to_owned(),
             columns: vec![
                 Column::words(words::PLANES_OF_ANGLE, "planes"),
-                Column::number(words::VALUE, None, "angle_deg"),
+                Column::words(words::ANGLE_WITH_STD, "angle_deg"),
             ],
             rows,
             note: None,
@@ -142,8 +142,8 @@ fn of_teeth(teeth: &Teeth, known: &Known, suffix: &str) -> Vec<Block> {
         note: None,
     };
     let compared = [
-        (words::PITCH, teeth.pitches().collect::<Vec<_>>(), known.pitch_mm),
-        (words::HEIGHT, teeth.heights().collect(), known.height_mm),
+        (words::PITCHES, teeth.pitches().collect::<Vec<_>>(), known.pitch_mm),
+        (words::HEIGHTS, teeth.heights().collect(), known.height_mm),
     ];
     let facts = compared.into_iter().filter_map(|(name, values, nominal_mm)| {
         let deviation = Deviation::of(values.into_iter(), nominal_mm?)?;

@@ -41,7 +41,7 @@ pub(in crate::report::document) fn blocks(evidence: &Evidence, options: &Options
     for further in &session.further {
         let used = further.stations.iter().filter(|station| station.enabled).count();
         let figures = further_figures(&further.target, used, further.stations.len());
-        facts.push(Fact::new(words::of_target(start::FURTHER, &further.name), figures));
+        facts.push(Fact::new(words::of_target(words::FURTHER_TARGET, &further.name), figures));
     }
     for (name, notes) in [(words::NOTES, &session.notes), (words::REMARKS, &options.notes)] {
         if !notes.trim().is_empty() {

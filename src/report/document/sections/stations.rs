@@ -2,7 +2,7 @@
 
 use crate::calibrate::validation::Influence;
 use crate::calibrate::{Method, PlateFound, Solution, StationSolution, Sweep, solution_of};
-use crate::report::document::{Block, Cell, Column, Table};
+use crate::report::document::{Block, Cell, Column, Table, typeset};
 use crate::report::evidence::{Evidence, TargetEvidence};
 use crate::session::Station;
 use crate::text::report as words;
@@ -63,7 +63,7 @@ fn stations(target: &TargetEvidence, solution: &Solution) -> Parts {
         let influence = influence.iter().find(|influence| influence.station_idx == idx);
         let mut row = vec![Cell::words(&station.label)];
         row.extend(has_sides.then(|| match &used {
-            Some(used) => Cell::words(used.side.symbol()),
+            Some(used) => Cell::words(typeset(used.side.symbol())),
             None => Cell::words(words::STATION_LEFT_OUT),
         }));
         row.push(Cell::count(station.captures.len()));

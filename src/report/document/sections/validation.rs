@@ -30,7 +30,7 @@ fn of_target(target: &TargetEvidence) -> Vec<Block> {
     ];
     facts.extend(truth(target, solution));
     for line in accuracy_lines(&target.session, solution, &solved.examined.examination()) {
-        let (name, value) = line.split_once(": ").unwrap_or((words::REMARKS, line.as_str()));
+        let (name, value) = line.split_once(": ").unwrap_or((words::IF_RADIUS, line.as_str()));
         facts.push(Fact::new(capitalised(name), typeset_numbers(value)));
     }
     vec![Block::Facts(facts)]

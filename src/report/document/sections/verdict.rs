@@ -1,7 +1,7 @@
 //! Good, usable, or not usable, with the reason beside it and the headline figure.
 
-use crate::calibrate::Solution;
 use crate::calibrate::verdict::{GOOD_UP_TO_MM, USABLE_UP_TO_MM};
+use crate::calibrate::{self, Solution};
 use crate::diagnose::Severity;
 use crate::report::compare::improvement;
 use crate::report::document::{Block, Cell, Column, Fact, Finding, Table, Verdict, typeset};
@@ -52,9 +52,10 @@ fn nothing(evidence: &Evidence) -> Verdict {
         reason = format!("{} {}", sentence(&reason), words::PART_MEASURED);
     }
     Verdict {
-        rating: None,
+        // Where a part was to be measured, no calibration is no failure.
+        rating: (!has_parts).then_some(calibrate::Verdict::NotUsable),
         name: words::NO_CALIBRATION.to_owned(),
-        mark: words::NO_CALIBRATION_MARK,
+        mark: if has_parts { words::NO_VERDICT_MARK } else { verdict_mark(calibrate::Verdict::NotUsable) },
         reason: sentence(&reason),
         headline: None,
         headline_note: None,
