@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use crate::app::Document;
+use crate::app;
 use crate::app::jobs::JobOutcome;
-use crate::report::document::{self, InputFile, Options};
+use crate::report::document::{Document, InputFile, Options, document};
 use crate::report::evidence::Evidence;
 use crate::report::files::{HTML, report_files, write_files};
 use crate::session;
@@ -20,13 +20,15 @@ pub struct Gathered {
     pub evidence: Evidence,
     /// The session, as it stands in its file or would stand there.
     pub inputs: Vec<InputFile>,
+    /// The whole report, without an operator's words.
+    pub document: Document,
 }
 
 impl Gathered {
     /// The report with these sections and names.
     #[must_use]
-    pub fn document(&self, options: &Options) -> document::Document {
-        document::document(&self.evidence, &self.inputs, options)
+    pub fn document_with(&self, options: &Options) -> Document {
+        document(&self.evidence, &self.inputs, options)
     }
 }
 
@@ -47,16 +49,18 @@ impl Workbench {
     }
 
     pub(super) fn gather_report(&mut self) {
-        let Some(document) = &self.document else { return };
-        let (session, revision, given) = (Arc::clone(&document.session), document.revision, self.given.clone());
-        let file = document.path.clone().filter(|_| !document.is_unsaved());
-        let title = document.title();
+        let Some(open) = &self.document else { return };
+        let (session, revision, given) = (Arc::clone(&open.session), open.revision, self.given.clone());
+        let file = open.path.clone().filter(|_| !open.is_unsaved());
+        let title = open.title();
         self.report.start("gather report", &self.wake, revision, move |watch| {
             let evidence = Evidence::gather(&session, &given, watch)?;
             // What is on the disk is what was read; what is not saved is told as it would be saved.
             let bytes = file.and_then(|path| std::fs::read(path).ok());
             let bytes = bytes.unwrap_or_else(|| session::to_json(&session).into_bytes());
-            Ok(Arc::new(Gathered { inputs: vec![InputFile::new(title, &bytes)], evidence }))
+            let inputs = vec![InputFile::new(title, &bytes)];
+            let document = document(&evidence, &inputs, &Options::default());
+            Ok(Arc::new(Gathered { evidence, inputs, document }))
         });
     }
 
@@ -64,10 +68,12 @@ impl Workbench {
     pub(super) fn write_report(&mut self, folder: PathBuf, options: Options) {
         let Some(found) = self.report.last() else { return };
         let gathered = Arc::clone(&found.value);
-        let of_document = self.document.as_ref().map(Document::id);
+        let of_document = self.document.as_ref().map(app::Document::id);
         self.reporting.start("write report", &self.wake, move |_| {
-            let files = report_files(&gathered.document(&options), &gathered.evidence);
-            let written = write_files(&files, &folder).map_err(|error| error.to_string());
+            let files = report_files(&gathered.document_with(&options), &gathered.evidence);
+            let written = files
+                .map_err(|error| error.to_string())
+                .and_then(|files| write_files(&files, &folder).map_err(|error| error.to_string()));
             (of_document, written.map(|paths| (folder.join(HTML), paths.len())))
         });
     }
@@ -78,7 +84,7 @@ impl Workbench {
             JobOutcome::Done((of_document, Ok((page, num_files)))) => {
                 let folder = page.parent().unwrap_or(&page).display().to_string();
                 self.notify(NoticeKind::Done, words::wrote_report(num_files, &folder));
-                if of_document == self.document.as_ref().map(Document::id) {
+                if of_document == self.document.as_ref().map(app::Document::id) {
                     self.written_report = Some(page);
                 }
             }

@@ -90,3 +90,5 @@ pub fn wrote_report(num_files: usize, folder: &str) -> String {
 pub fn gathering_progress(done: usize, total: usize) -> String {
     if total == 0 { GATHERING.to_owned() } else { format!("Gathering the report, {done} of {total}") }
 }
+/// Before the path of the page that was written last.
+pub const WRITTEN_TO: &str = "Written to";

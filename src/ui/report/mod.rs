@@ -1,5 +1,6 @@
 //! The Report step: what leaves the program, for people and for controllers.
 
+mod figures;
 mod page;
 mod panel;
 mod preview;

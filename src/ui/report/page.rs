@@ -3,11 +3,12 @@
 use egui::{Frame, Label, Margin, Rect, RichText, Role, Sense, Stroke, Theme, Ui, UiBuilder, WidgetInfo, vec2};
 
 use crate::diagnose::Severity;
-use crate::report::document::{Block, Document, Fact, Finding, Verdict};
+use crate::report::document::{Block, Document, Fact, Finding, Section, Verdict};
 use crate::text::diagnosis::{severity_mark, severity_name};
 use crate::text::report_panel as words;
 use crate::ui::theme;
 
+use super::figures::Figures;
 use super::table;
 
 /// White around the text, points.
@@ -25,16 +26,28 @@ const NAMES_PART: f32 = 0.34;
 /// Until a block is seen for the first time it counts for this, points.
 const UNSEEN_HEIGHT: f32 = 60.0;
 
-/// What is remembered of a page: the heights of its blocks at a width.
+/// What is remembered of a page: its figures, and the heights of its blocks at a width.
 #[derive(Debug, Default)]
 pub(super) struct Page {
     width: f32,
+    figures: Figures,
     heights: Vec<Option<f32>>,
 }
 
 impl Page {
-    /// Shows the document in the width available.
-    pub(super) fn show(&mut self, ui: &mut Ui, document: &Document) {
+    /// Whether a figure is being drawn.
+    pub(super) const fn is_drawing(&self) -> bool {
+        self.figures.is_drawing()
+    }
+
+    /// Other sections, or other words in them: all is laid out anew.
+    pub(super) fn forget_heights(&mut self) {
+        self.heights.clear();
+    }
+
+    /// Shows sections in the width available.
+    pub(super) fn show(&mut self, ui: &mut Ui, head: &Document, sections: &[&Section]) {
+        self.figures.poll(ui);
         let print = ui.ctx().style_of(Theme::Light);
         ui.visuals_mut().clone_from(&print.visuals);
         let palette = theme::palette(ui);
@@ -50,29 +63,29 @@ impl Page {
                 self.width = ui.available_width();
                 self.heights.clear();
             }
-            self.contents(ui, document);
+            self.contents(ui, head, sections);
         });
         shown.response.widget_info(|| WidgetInfo::labeled(Role::Document, true, words::PREVIEW));
     }
 
-    fn contents(&mut self, ui: &mut Ui, document: &Document) {
+    fn contents(&mut self, ui: &mut Ui, head: &Document, sections: &[&Section]) {
         let mut block_idx = 0;
-        self.block(ui, &mut block_idx, |ui| {
-            ui.label(theme::dim(ui, &document.subtitle));
-            ui.add(Label::new(theme::heading(&document.title)).wrap());
+        self.block(ui, &mut block_idx, |ui, _| {
+            ui.label(theme::dim(ui, &head.subtitle));
+            ui.add(Label::new(theme::heading(&head.title)).wrap());
         });
-        for section in &document.sections {
+        for section in sections {
             ui.add_space(SECTION_GAP);
-            self.block(ui, &mut block_idx, |ui| section_heading(ui, &section.title));
+            self.block(ui, &mut block_idx, |ui, _| section_heading(ui, &section.title));
             for block in &section.blocks {
                 ui.add_space(BLOCK_GAP);
-                self.block(ui, &mut block_idx, |ui| paint(ui, block));
+                self.block(ui, &mut block_idx, |ui, figures| paint(ui, figures, block));
             }
         }
     }
 
     /// A block where it is in sight, its room where it is not.
-    fn block(&mut self, ui: &mut Ui, block_idx: &mut usize, contents: impl FnOnce(&mut Ui)) {
+    fn block(&mut self, ui: &mut Ui, block_idx: &mut usize, contents: impl FnOnce(&mut Ui, &mut Figures)) {
         let idx = std::mem::replace(block_idx, *block_idx + 1);
         if self.heights.len() <= idx {
             self.heights.resize(idx + 1, None);
@@ -84,9 +97,10 @@ impl Page {
             ui.allocate_exact_size(place.size(), Sense::hover());
             return;
         }
+        let figures = &mut self.figures;
         let shown = ui.scope_builder(UiBuilder::new().id_salt(idx), |ui| {
             ui.set_width(ui.available_width());
-            contents(ui);
+            contents(ui, figures);
         });
         self.heights[idx] = Some(shown.response.rect.height());
     }
@@ -99,7 +113,7 @@ fn section_heading(ui: &mut Ui, title: &str) {
     ui.painter().hline(line.x_range(), line.center().y, Stroke::new(1.0, palette.hairline));
 }
 
-fn paint(ui: &mut Ui, block: &Block) {
+fn paint(ui: &mut Ui, figures: &mut Figures, block: &Block) {
     match block {
         Block::Heading(title) => {
             ui.add_space(4.0);
@@ -111,6 +125,7 @@ fn paint(ui: &mut Ui, block: &Block) {
         Block::Verdict(verdict) => paint_verdict(ui, verdict),
         Block::Facts(facts) => facts.iter().for_each(|fact| paint_fact(ui, fact)),
         Block::Table(table) => table::paint(ui, table),
+        Block::Figure(figure) => figures.show(ui, figure),
         Block::Code { caption, text } => paint_code(ui, caption, text),
         Block::Findings(findings) => findings.iter().for_each(|finding| paint_finding(ui, finding)),
         Block::Signature(lines) => lines.iter().for_each(|line| paint_line_to_sign(ui, line)),

@@ -18,6 +18,12 @@ pub struct ReportState {
 }
 
 impl ReportState {
+    /// Whether a figure is being drawn.
+    #[must_use]
+    pub const fn is_drawing(&self) -> bool {
+        self.preview.is_drawing()
+    }
+
     /// What the report is to hold.
     #[must_use]
     pub fn options(&self, memory: &ReportMemory) -> Options {

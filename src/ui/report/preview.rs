@@ -3,12 +3,12 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use egui::{Align, Frame, Label, Layout, ScrollArea, TextEdit, Ui, UiBuilder};
+use egui::{Align, Frame, Label, Layout, RichText, ScrollArea, TextEdit, Ui, UiBuilder};
 use serde::{Deserialize, Serialize};
 
 use crate::app::workbench::reporting::Gathered;
-use crate::app::{Command, NoticeKind};
-use crate::report::document::{Document, Options, SectionId};
+use crate::app::{Command, NoticeKind, Workbench};
+use crate::report::document::{Document, Options, Section, SectionId};
 use crate::text::report_panel as words;
 use crate::ui::actions::Action;
 use crate::ui::widgets::{self, FromTop, name_field};
@@ -42,16 +42,36 @@ pub(super) struct PreviewState {
     /// The revision for which the report was asked last: once is enough, also after a cancel.
     asked_for: Option<u64>,
     shown: Option<Shown>,
+    page: Page,
     list: FromTop,
 }
 
-/// The document that is on the page, and what it was made from.
+/// The sections with the operator's words in them.
+const OF_OPERATOR: [SectionId; 2] = [SectionId::Setup, SectionId::Signature];
+
+/// What is on the page, and what it was made from.
 #[derive(Debug)]
 struct Shown {
     gathered: Arc<Gathered>,
     options: Options,
-    document: Document,
-    page: Page,
+    /// The sections with the operator's words in them: few and short, so that they can be made anew at every key.
+    of_operator: Document,
+}
+
+impl Shown {
+    fn new(gathered: Arc<Gathered>, options: Options) -> Self {
+        let sections = OF_OPERATOR.into_iter().filter(|section| options.sections.contains(section)).collect();
+        let of_operator = gathered.document_with(&Options { sections, ..options.clone() });
+        Self { gathered, options, of_operator }
+    }
+
+    /// The sections that are wanted, in order.
+    fn sections(&self) -> Vec<&Section> {
+        let wanted = |section: &&Section| self.options.sections.contains(&section.id);
+        let own = |id: SectionId| self.of_operator.sections.iter().find(|section| section.id == id);
+        let all = self.gathered.document.sections.iter().filter(wanted);
+        all.map(|section| own(section.id).unwrap_or(section)).collect()
+    }
 }
 
 impl Default for PreviewState {
@@ -62,6 +82,7 @@ impl Default for PreviewState {
             remarks: String::new(),
             asked_for: None,
             shown: None,
+            page: Page::default(),
             list: FromTop::default(),
         }
     }
@@ -78,15 +99,21 @@ impl PreviewState {
         }
     }
 
+    /// Whether a figure is being drawn.
+    pub(super) const fn is_drawing(&self) -> bool {
+        self.page.is_drawing()
+    }
+
     /// The document with what is chosen, made anew where that has changed.
     fn update(&mut self, gathered: &Arc<Gathered>, memory: &ReportMemory) {
         let options = self.options(memory);
-        let is_known = |shown: &Shown| Arc::ptr_eq(&shown.gathered, gathered) && shown.options == options;
-        if !self.shown.as_ref().is_some_and(is_known) {
-            let document = gathered.document(&options);
-            let gathered = Arc::clone(gathered);
-            self.shown = Some(Shown { gathered, options, document, page: Page::default() });
+        let is_known = |shown: &Shown| Arc::ptr_eq(&shown.gathered, gathered);
+        match &self.shown {
+            Some(shown) if is_known(shown) && shown.options == options => return,
+            Some(shown) if is_known(shown) => self.page.forget_heights(),
+            _ => self.page = Page::default(),
         }
+        self.shown = Some(Shown::new(Arc::clone(gathered), options));
     }
 }
 
@@ -112,8 +139,7 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut Prev
     choices(&mut left, context, state, memory);
     let mut right = ui.new_child(child(right.with_min_x(right.left() + theme::GAP)));
     let Some(found) = report.last() else {
-        let is_coming = report.is_running() || !workbench.results_are_current() || is_idle && !is_current;
-        if report.is_running() || (is_coming && workbench.solve_progress().is_some()) {
+        if report.is_running() || workbench.solve_progress().is_some() {
             widgets::nothing(&mut right, words::GATHERING);
         } else {
             not_gathered(&mut right, context);
@@ -143,37 +169,64 @@ fn not_gathered(ui: &mut Ui, context: &mut PanelContext<'_>) {
 /// What the report is to hold, who answers for it, and where it goes.
 fn choices(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut PreviewState, memory: &mut ReportMemory) {
     let height = ui.available_height();
-    widgets::card_with_height(
-        ui,
-        words::SECTIONS,
-        height,
-        |_| {},
-        |ui| {
-            let area = state.list.apply(ScrollArea::vertical().id_salt("report choices").auto_shrink(false));
-            area.show(ui, |ui| {
-                Frame::new().inner_margin(egui::Margin::symmetric(12, 8)).show(ui, |ui| {
-                    ui.spacing_mut().item_spacing.y = 2.0;
-                    for section in SectionId::ALL {
-                        let mut is_wanted = state.sections.contains(&section);
-                        if ui.checkbox(&mut is_wanted, section.title()).changed() {
-                            if is_wanted {
-                                state.sections.insert(section);
-                            } else {
-                                state.sections.remove(&section);
-                            }
+    let (workbench, actions) = (context.workbench, &mut *context.actions);
+    let button = |ui: &mut Ui| save_button(ui, workbench, actions);
+    let mut is_copied = false;
+    widgets::card_with_height(ui, words::SECTIONS, height, button, |ui| {
+        let area = state.list.apply(ScrollArea::vertical().id_salt("report choices").auto_shrink(false));
+        area.show(ui, |ui| {
+            Frame::new().inner_margin(egui::Margin::symmetric(12, 8)).show(ui, |ui| {
+                ui.spacing_mut().item_spacing.y = 2.0;
+                is_copied = written(ui, workbench);
+                for section in SectionId::ALL {
+                    let mut is_wanted = state.sections.contains(&section);
+                    if ui.checkbox(&mut is_wanted, section.title()).changed() {
+                        if is_wanted {
+                            state.sections.insert(section);
+                        } else {
+                            state.sections.remove(&section);
                         }
                     }
-                    ui.add_space(8.0);
-                    field(ui, words::OPERATOR, "", &mut memory.operator);
-                    field(ui, words::PLACE, "", &mut memory.place);
-                    field(ui, words::DATE, words::DATE_HINT, &mut state.date);
-                    remarks(ui, &mut state.remarks);
-                    ui.add_space(8.0);
-                    save(ui, context);
-                });
+                }
+                ui.add_space(8.0);
+                field(ui, words::OPERATOR, "", &mut memory.operator);
+                field(ui, words::PLACE, "", &mut memory.place);
+                field(ui, words::DATE, words::DATE_HINT, &mut state.date);
+                remarks(ui, &mut state.remarks);
             });
-        },
-    );
+        });
+    });
+    if is_copied {
+        context.commands.push(Command::Tell(NoticeKind::Done, words::COPIED_TEXT.to_owned()));
+    }
+}
+
+/// The next action of the step; not while what is shown is no longer so.
+fn save_button(ui: &mut Ui, workbench: &Workbench, actions: &mut Vec<Action>) {
+    let is_current = workbench.report().last().is_some_and(|found| workbench.is_current(found.revision));
+    if workbench.is_writing_report() {
+        ui.label(theme::dim(ui, words::WRITING));
+        return;
+    }
+    ui.add_enabled_ui(is_current, |ui| {
+        if widgets::primary_button(ui, words::SAVE_REPORT).on_hover_text(words::SAVE_REPORT_HINT).clicked() {
+            actions.push(Action::SaveReport);
+        }
+    });
+}
+
+/// Where the report was written last. Answers whether its path was copied.
+fn written(ui: &mut Ui, workbench: &Workbench) -> bool {
+    let Some(page) = workbench.written_report() else { return false };
+    let path = page.display().to_string();
+    ui.add(Label::new(theme::dim(ui, words::WRITTEN_TO).size(theme::SMALL_SIZE)));
+    ui.add(Label::new(RichText::new(&path).size(theme::SMALL_SIZE)).wrap());
+    let is_copied = ui.button(words::COPY_PATH).clicked();
+    if is_copied {
+        ui.ctx().copy_text(path);
+    }
+    ui.add_space(8.0);
+    is_copied
 }
 
 fn field(ui: &mut Ui, name: &str, hint: &str, text: &mut String) {
@@ -189,34 +242,11 @@ fn remarks(ui: &mut Ui, text: &mut String) {
     name_field(&field, words::REMARKS, text);
 }
 
-/// The button, and where the report was written last.
-fn save(ui: &mut Ui, context: &mut PanelContext<'_>) {
-    let workbench = context.workbench;
-    let is_current = workbench.report().last().is_some_and(|found| workbench.is_current(found.revision));
-    if workbench.is_writing_report() {
-        ui.label(theme::dim(ui, words::WRITING));
-    } else {
-        ui.add_enabled_ui(is_current, |ui| {
-            if widgets::primary_button(ui, words::SAVE_REPORT).on_hover_text(words::SAVE_REPORT_HINT).clicked() {
-                context.actions.push(Action::SaveReport);
-            }
-        });
-    }
-    let Some(page) = workbench.written_report() else { return };
-    let path = page.display().to_string();
-    ui.add_space(8.0);
-    ui.add(Label::new(theme::dim(ui, &path).size(theme::SMALL_SIZE)).wrap());
-    ui.add_space(4.0);
-    if ui.button(words::COPY_PATH).clicked() {
-        ui.ctx().copy_text(path);
-        context.commands.push(Command::Tell(NoticeKind::Done, words::COPIED_TEXT.to_owned()));
-    }
-}
-
 /// The page on the desk.
 fn paper(ui: &mut Ui, state: &mut PreviewState) {
-    let Some(shown) = &mut state.shown else { return };
-    if shown.document.sections.is_empty() {
+    let Some(shown) = &state.shown else { return };
+    let sections = shown.sections();
+    if sections.is_empty() {
         widgets::nothing(ui, words::NO_SECTIONS);
         return;
     }
@@ -224,11 +254,11 @@ fn paper(ui: &mut Ui, state: &mut PreviewState) {
     area.show(ui, |ui| {
         let width = ui.available_width().min(MOST_PAGE_WIDTH);
         let left = (ui.available_width() - width) / 2.0;
-        ui.horizontal(|ui| {
+        ui.horizontal_top(|ui| {
             ui.spacing_mut().item_spacing.x = 0.0;
             ui.add_space(left);
             ui.allocate_ui_with_layout(egui::vec2(width, 0.0), Layout::top_down(Align::Min), |ui| {
-                shown.page.show(ui, &shown.document);
+                state.page.show(ui, &shown.gathered.document, &sections);
             });
         });
     });

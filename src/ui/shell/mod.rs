@@ -206,6 +206,7 @@ impl Shell {
             || self.start.is_reading()
             || self.paste_patience.is_some()
             || self.drawing.is_running()
+            || self.report.is_drawing()
     }
 
     /// Takes in finished jobs; also while the window is hidden.
@@ -245,6 +246,10 @@ impl Shell {
         if !is_asking {
             Self::read_dropped_files(&ctx, &mut commands);
             self.take_pasted_text(&ctx, &mut commands);
+        }
+        if self.is_help_open {
+            // What is typed over the help is not for the rail below it.
+            actions.retain(|action| matches!(action, Action::Help | Action::Quit));
         }
         let is_importing = self.workbench.import().is_some();
         if is_importing {
