@@ -7,6 +7,7 @@ use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use handeye::report::document::SectionId;
 use handeye::report::tool_frame::{Format, formats};
 use handeye::session::{self, Session, Target, samples};
 use handeye::text::{report_panel, shell as shell_words, tool_frame as words};
@@ -20,8 +21,15 @@ fn sample(name: &str) -> Session {
     session::parse(sample.json.as_bytes(), name).expect("a session")
 }
 
+/// At the tool frame.
+fn tool_frame_of(session: Session) -> Harness<'static, Window> {
+    let mut harness = window_at(Step::Report, session, SIZE);
+    click(&mut harness, report_panel::TOOL_FRAME);
+    harness
+}
+
 fn window() -> Harness<'static, Window> {
-    window_at(Step::Report, sample("clean-sweeps.json"), SIZE)
+    tool_frame_of(sample("clean-sweeps.json"))
 }
 
 /// The text in a field.
@@ -103,7 +111,7 @@ fn name_and_number_stand_in_the_text() {
 fn a_fixed_sensor_has_no_tool() {
     let mut session = sample("clean-sweeps.json");
     session.mount = handeye::calibrate::Mount::Fixed;
-    let harness = window_at(Step::Report, session, SIZE);
+    let harness = tool_frame_of(session);
     assert!(
         harness.query_by_label(words::NO_TOOL).is_some() || harness.query_by_label(words::NO_CALIBRATION).is_some()
     );
@@ -113,6 +121,47 @@ fn a_fixed_sensor_has_no_tool() {
 #[test]
 fn without_a_calibration_it_says_what_to_do() {
     let session = Session::new(Target::ball(15.0));
-    let harness = window_at(Step::Report, session, SIZE);
+    let harness = tool_frame_of(session);
     assert!(harness.query_by_label(words::NO_CALIBRATION).is_some());
+}
+
+#[test]
+fn the_report_is_seen_and_written() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let place = folder.path().join("report");
+    let mut harness = window_at(Step::Report, sample("clean-sweeps.json"), SIZE);
+    for section in [SectionId::Verdict, SectionId::Calibration] {
+        // On the page, and in the list of what it holds.
+        assert_eq!(harness.get_all_by_label(section.title()).count(), 2, "{}", section.title());
+    }
+    harness.get_by_role_and_label(Role::CheckBox, SectionId::Calibration.title()).click();
+    settle(&mut harness);
+    assert_eq!(harness.get_all_by_label(SectionId::Calibration.title()).count(), 1);
+    let operator = harness.get_by_role_and_label(Role::TextInput, report_panel::OPERATOR);
+    operator.focus();
+    operator.type_text("A. Operator");
+    settle(&mut harness);
+    harness.get_by_label(report_panel::SAVE_REPORT).click();
+    save_as(&mut harness, &place);
+    let page = std::fs::read_to_string(place.join("report.html")).expect("written");
+    assert!(page.contains("A. Operator") && !page.contains("id=\"calibration\""));
+    for file in ["report.md", "result.json", "tables/methods.csv"] {
+        assert!(place.join(file).exists(), "{file}");
+    }
+    assert!(harness.query_by_label(report_panel::COPY_PATH).is_some());
+}
+
+#[test]
+fn a_report_of_an_earlier_state_is_marked_and_follows() {
+    let mut harness = window_at(Step::Report, sample("clean-sweeps.json"), SIZE);
+    let before = workbench(&harness).report().last().expect("gathered").revision;
+    step_window::apply(&mut harness, handeye::app::Command::SetStationEnabled { station_idx: 1, enabled: false });
+    let after = workbench(&harness).report().last().expect("gathered").revision;
+    assert!(after > before && workbench(&harness).is_current(after));
+}
+
+#[test]
+fn with_nothing_to_report_it_says_what_to_do() {
+    let harness = window_at(Step::Report, Session::new(Target::ball(15.0)), SIZE);
+    assert!(harness.query_by_label(report_panel::NOTHING_TO_REPORT).is_some());
 }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use crate::calibrate::SideChoice;
 use crate::diagnose::Remedy;
 use crate::plan::Limits;
+use crate::report::document::Options;
 use crate::session::import::ImportOptions;
 use crate::session::{Edit, Target};
 use crate::verify::Calibration;
@@ -158,6 +159,17 @@ pub enum Command {
     Scan(Box<ScanCommand>),
     /// Something for the live cell.
     Cell(Box<CellCommand>),
+    /// Gathers what a report is made of.
+    GatherReport,
+    /// Stops that; what was gathered last stays.
+    CancelReport,
+    /// Writes the report, as a page and as Markdown, with its tables, figures and exports.
+    WriteReport {
+        /// The folder, made if it is missing; files of a report that is there are replaced.
+        folder: PathBuf,
+        /// What it is to hold.
+        options: Box<Options>,
+    },
     /// Says that something was done, or could not be.
     Tell(NoticeKind, String),
     /// Removes a notice.

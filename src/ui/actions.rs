@@ -6,8 +6,8 @@ use crate::app::{Document, Workbench};
 use crate::scene::PartKind;
 use crate::session::{Capture, Reading};
 use crate::text::{
-    capture as capture_words, document as document_words, import as import_words, shell as words,
-    verify as verify_words, workpiece as workpiece_words,
+    capture as capture_words, document as document_words, import as import_words, report_panel as report_words,
+    shell as words, verify as verify_words, workpiece as workpiece_words,
 };
 
 use super::rail::Step;
@@ -41,6 +41,8 @@ pub enum Action {
     ExportProfiles,
     /// Asks for a file and writes the points of the scan on the bench.
     ExportPoints,
+    /// Asks for a folder and writes the report.
+    SaveReport,
     /// Asks for a file of points.
     OpenPoints,
     /// Asks for the file with the calibration that a scan is seen through.
@@ -107,6 +109,7 @@ impl Action {
             | Self::ExportPoses
             | Self::ExportProfiles
             | Self::ExportPoints
+            | Self::SaveReport
             | Self::OpenPoints
             | Self::ChooseCalibration => return None,
         };
@@ -131,6 +134,7 @@ impl Action {
             Self::ExportPoses => import_words::EXPORT_POSES.to_owned(),
             Self::ExportProfiles => import_words::EXPORT_PROFILES.to_owned(),
             Self::ExportPoints => workpiece_words::EXPORT_POINTS.to_owned(),
+            Self::SaveReport => report_words::SAVE_REPORT.to_owned(),
             Self::OpenPoints => workpiece_words::OPEN_POINTS.to_owned(),
             Self::ChooseCalibration => workpiece_words::CHOOSE_CALIBRATION.to_owned(),
             Self::Save => words::SAVE.to_owned(),
@@ -164,6 +168,7 @@ impl Action {
                 document.is_none().then_some(words::NO_DOCUMENT)
             }
             Self::ExportPoses | Self::ExportProfiles => export_refusal(self, document),
+            Self::SaveReport => workbench.report().last().is_none().then_some(report_words::NOTHING_TO_REPORT),
             Self::Undo => document
                 .is_none_or(|document| document.history.undo_label().is_none())
                 .then_some(words::NOTHING_TO_UNDO),

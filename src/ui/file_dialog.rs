@@ -43,6 +43,8 @@ pub enum Purpose {
     WatchedFolder,
     /// Choosing a file to write a tool frame to.
     ToolFrame,
+    /// Choosing a folder to write the report into.
+    ReportFolder,
     /// Choosing a file to write the picture of a plot to.
     Picture,
 }
@@ -69,6 +71,7 @@ impl Purpose {
             Self::WatchedFolder => capture_words::FOLDER_TITLE,
             Self::ToolFrame => tool_frame_words::SAVE_TITLE,
             Self::Picture => report_words::PICTURE_TITLE,
+            Self::ReportFolder => report_words::REPORT_FOLDER_TITLE,
         }
     }
 
@@ -78,7 +81,7 @@ impl Purpose {
         match self {
             Self::Open | Self::OpenPoints => words::OPEN,
             Self::Calibration => workpiece_words::USE_BUTTON,
-            Self::Save | Self::ToolFrame | Self::Picture => words::SAVE,
+            Self::Save | Self::ToolFrame | Self::Picture | Self::ReportFolder => words::SAVE,
             Self::ImportFiles | Self::ImportFolder | Self::AddSession => import_words::IMPORT_BUTTON,
             Self::AddFurther => verify_words::ADD_TARGET_BUTTON,
             Self::ExportPoses | Self::ExportProfiles | Self::ExportPoints => import_words::EXPORT_BUTTON,
@@ -179,7 +182,9 @@ fn ask(purpose: Purpose, suggested_name: &str) -> Answer {
         }
         Purpose::Calibration => all(dialog).pick_file().map(one),
         Purpose::ToolFrame | Purpose::Picture => all(dialog).set_file_name(suggested_name).save_file().map(one),
-        Purpose::ImportFolder | Purpose::ExportProfiles | Purpose::WatchedFolder => dialog.pick_folder().map(one),
+        Purpose::ImportFolder | Purpose::ExportProfiles | Purpose::WatchedFolder | Purpose::ReportFolder => {
+            dialog.pick_folder().map(one)
+        }
     };
     match chosen.filter(|paths| !paths.is_empty()) {
         Some(paths) => Answer::Chosen(purpose, paths),

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::capture::{CellMemory, memory};
 use super::import::ImportMemory;
+use super::report::ReportMemory;
 
 /// Recent files kept.
 const MAX_RECENT: usize = 8;
@@ -47,6 +48,8 @@ pub struct Persisted {
     pub recent_files: Vec<PathBuf>,
     /// Whether the inspector is shown.
     pub inspector_open: bool,
+    /// Who answers for reports, and where they are made.
+    pub report: ReportMemory,
     /// How tables were read that were imported.
     pub imports: ImportMemory,
     /// Robots and profilers, and what is set before motion.
@@ -61,6 +64,7 @@ impl Default for Persisted {
             scale: 1.0,
             recent_files: Vec::new(),
             inspector_open: true,
+            report: ReportMemory::default(),
             imports: ImportMemory::default(),
             cell: CellMemory::default(),
         }

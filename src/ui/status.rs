@@ -93,6 +93,7 @@ fn running(workbench: &Workbench) -> Option<(Progress, String, Command)> {
     };
     told(workbench.solve_progress(), words::solving_progress, Command::CancelSolve)
         .or_else(|| told(workbench.bootstrap().progress(), panel_words::bootstrap_progress, Command::CancelBootstrap))
+        .or_else(|| told(workbench.report().progress(), report_words::gathering_progress, Command::CancelReport))
         .or_else(|| told(workbench.diagnosis().progress(), words::diagnosing_progress, Command::CancelDiagnosis))
 }
 

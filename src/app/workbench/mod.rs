@@ -6,6 +6,7 @@ mod exports;
 mod files;
 mod imports;
 mod keeping;
+pub mod reporting;
 pub mod scans;
 mod studies;
 mod verifying;
@@ -31,6 +32,7 @@ use self::exports::Exported;
 use self::files::{Loaded, Look, Save, SaveOutcome};
 pub use self::imports::ImportDraft;
 use self::imports::Imports;
+use self::reporting::{Gathered, Reported};
 use self::scans::Scans;
 pub use self::studies::Results;
 use self::verifying::Added;
@@ -112,6 +114,9 @@ pub struct Workbench {
     imports: Imports,
     exporting: Slot<Exported>,
     scans: Scans,
+    report: Study<Arc<Gathered>>,
+    reporting: Slot<(Option<u64>, Reported)>,
+    written_report: Option<PathBuf>,
     cell: LiveCell,
 }
 
@@ -149,6 +154,9 @@ impl Workbench {
             imports: Imports::default(),
             exporting: Slot::default(),
             scans: Scans::default(),
+            report: Study::default(),
+            reporting: Slot::default(),
+            written_report: None,
             cell: LiveCell::default(),
         }
     }
@@ -219,6 +227,12 @@ impl Workbench {
         &self.bootstrap
     }
 
+    /// What a report is made of, where it was asked for.
+    #[must_use]
+    pub const fn report(&self) -> &Study<Arc<Gathered>> {
+        &self.report
+    }
+
     /// Notices not yet dismissed, oldest first.
     #[must_use]
     pub fn notices(&self) -> &[Notice] {
@@ -259,6 +273,8 @@ impl Workbench {
             || self.imports.is_busy()
             || self.exporting.is_running()
             || self.scans.is_busy()
+            || self.report.is_running()
+            || self.reporting.is_running()
     }
 
     /// Carries out one command.
@@ -311,6 +327,9 @@ impl Workbench {
             Command::WithdrawCalibration(name) => self.withdraw_calibration(&name),
             Command::Scan(command) => self.command_scans(*command),
             Command::Cell(command) => self.command_cell(*command),
+            Command::GatherReport => self.gather_report(),
+            Command::CancelReport => self.report.cancel(),
+            Command::WriteReport { folder, options } => self.write_report(folder, *options),
             Command::Tell(kind, message) => self.notify(kind, message),
             Command::DismissNotice(id) => self.notices.retain(|notice| notice.id != id),
         }
@@ -347,6 +366,7 @@ impl Workbench {
             ("trying other conventions", self.readings.poll()),
             ("the bootstrap", self.bootstrap.poll()),
             ("verifying", self.verification.poll()),
+            ("gathering the report", self.report.poll()),
         ] {
             let Some(ended) = ended else { continue };
             changed = true;
@@ -359,7 +379,7 @@ impl Workbench {
             self.take_added(outcome);
         }
         let imported = self.poll_imports();
-        let exported = self.poll_exports() | self.poll_scans();
+        let exported = self.poll_exports() | self.poll_scans() | self.poll_report();
         // Last, as a run goes on once the results of its last station are there.
         let cell = self.poll_cell();
         self.verify_what_waited();

@@ -51,6 +51,8 @@ impl Workbench {
         self.readings.clear();
         self.bootstrap.clear();
         self.verification.clear();
+        self.report.clear();
+        self.written_report = None;
         self.given.clear();
         self.plan_limits = Limits::default();
     }
@@ -70,6 +72,7 @@ impl Workbench {
         self.readings.cancel();
         self.bootstrap.cancel();
         self.verification.cancel();
+        self.report.cancel();
         let Some(document) = &self.document else { return };
         let session = Arc::clone(&document.session);
         let revision = document.revision;

@@ -52,6 +52,13 @@ impl Shell {
                     self.apply_to_each(paths, write);
                 }
             }
+            Purpose::ReportFolder => {
+                let options = self.report.options(&self.persisted.report);
+                self.apply_to_each(paths, |folder| {
+                    let options = Box::new(options.clone());
+                    Command::WriteReport { folder, options }
+                });
+            }
             Purpose::WatchedFolder => {
                 if let Some(folder) = paths.into_iter().next() {
                     self.persisted.cell.watch(folder);
@@ -72,6 +79,7 @@ impl Shell {
         let path = match purpose {
             Purpose::ExportPoses => folder.join(self.suggested_csv()),
             Purpose::ExportPoints => folder.join(self.suggested_ply()),
+            Purpose::ReportFolder => folder.join(self.suggested_report()),
             Purpose::ToolFrame | Purpose::Picture => folder.join(self.to_write.as_ref().map_or("", |file| &file.name)),
             _ => folder,
         };
@@ -81,6 +89,11 @@ impl Shell {
     fn suggested_csv(&self) -> String {
         let name = self.suggested_name();
         format!("{}-poses.csv", name.strip_suffix(".json").unwrap_or(&name))
+    }
+
+    fn suggested_report(&self) -> String {
+        let name = self.suggested_name();
+        format!("{}-report", name.strip_suffix(".json").unwrap_or(&name))
     }
 
     fn suggested_ply(&self) -> String {

@@ -206,6 +206,7 @@ impl Shell {
             || self.start.is_reading()
             || self.paste_patience.is_some()
             || self.drawing.is_running()
+            || self.report.is_drawing()
     }
 
     /// Takes in finished jobs; also while the window is hidden.
@@ -245,6 +246,10 @@ impl Shell {
         if !is_asking {
             Self::read_dropped_files(&ctx, &mut commands);
             self.take_pasted_text(&ctx, &mut commands);
+        }
+        if self.is_help_open {
+            // What is typed over the help is not for the rail below it.
+            actions.retain(|action| matches!(action, Action::Help | Action::Quit));
         }
         let is_importing = self.workbench.import().is_some();
         if is_importing {
@@ -342,7 +347,7 @@ impl Shell {
                 Step::Compare => compare::show(ui, &mut context, &mut self.compare),
                 Step::Diagnosis => diagnosis::show(ui, &mut context, &mut self.diagnosis),
                 Step::Verify => verify::show(ui, &mut context, &mut self.verify),
-                Step::Report => report::show(ui, &mut context, &mut self.report),
+                Step::Report => report::show(ui, &mut context, &mut self.report, &mut self.persisted.report),
             }
         });
     }
@@ -387,6 +392,7 @@ impl Shell {
             Action::ExportPoses => self.ask_for_paths(Purpose::ExportPoses),
             Action::ExportProfiles => self.ask_for_paths(Purpose::ExportProfiles),
             Action::ExportPoints => self.ask_for_paths(Purpose::ExportPoints),
+            Action::SaveReport => self.ask_for_paths(Purpose::ReportFolder),
             Action::OpenPoints => self.ask_for_paths(Purpose::OpenPoints),
             Action::ChooseCalibration => self.ask_for_paths(Purpose::Calibration),
             Action::ChooseWatchedFolder => self.ask_for_paths(Purpose::WatchedFolder),
