@@ -4,9 +4,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use crate::geometry::Vec3;
-use crate::report::compared::{ComparedPoints, NotCompared, compared_points, read_compared};
-use crate::report::comparison_file::comparison_file;
-use crate::text::compared as words;
+use crate::report::result_history::file::comparison_file;
+use crate::report::result_history::{ComparedPoints, NotCompared, compared_points, read_compared};
+use crate::text::compare_results as words;
 use crate::verify::difference::difference;
 use crate::watch::Unwatched;
 

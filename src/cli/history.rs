@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use crate::report::compared::{History, Order, read_history};
-use crate::report::comparison_file::{history_csv, history_file};
 use crate::report::digits::signed;
-use crate::text::compared as words;
+use crate::report::result_history::file::{history_csv, history_file};
+use crate::report::result_history::{History, Order, read_history};
+use crate::text::compare_results as words;
 use crate::verify::drift::Trend;
 use crate::watch::Unwatched;
 

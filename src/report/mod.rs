@@ -2,11 +2,9 @@
 //! also where a calibration is read from.
 
 pub mod calibration_file;
-pub mod compared;
-pub mod comparison_file;
-mod dates;
 mod diagnosis_entry;
 pub mod result_file;
+pub mod result_history;
 pub mod scan_file;
 pub mod tool_frame;
 pub mod verification_file;

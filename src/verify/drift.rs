@@ -228,10 +228,10 @@ mod tests {
     #[test]
     fn a_drift_and_a_jump_are_told_apart_with_and_without_stated_uncertainty() {
         for is_stated in [true, false] {
-            let found = drift(&history(16, 0.001, Some((9, 0.3)), is_stated), POINT);
+            let found = drift(&history(16, 0.003, Some((9, 0.3)), is_stated), POINT);
             assert_eq!(found.jumps, [9], "stated {is_stated}");
             let x = found.trends[0];
-            assert!(x.is_significant && (x.slope - 0.001).abs() < 4.0 * x.std, "{x:?}");
+            assert!(x.is_significant && (x.slope - 0.003).abs() < 4.0 * x.std, "{x:?}");
             // What the best two parallel lines through 9 and 7 values would know, within the scatter of a σ from 16.
             let squares = |count: f64| count * (count * count - 1.0) / 12.0;
             let best = STD_MM / (7.0 * (squares(9.0) + squares(7.0)).sqrt());

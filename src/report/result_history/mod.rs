@@ -1,5 +1,8 @@
 //! Calibrations to be compared: from result files, matrices and sessions, one by one or a whole folder in the order of time.
 
+mod dates;
+pub mod file;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -7,13 +10,13 @@ use crate::calibrate::{Mount, best_available};
 use crate::geometry::Vec3;
 use crate::session::{self, measure};
 use crate::sheet::natural_key;
-use crate::text::compared as words;
+use crate::text::compare_results as words;
 use crate::verify::difference::{PointShift, Stated, point_shift};
 use crate::verify::drift::{Drift, Epoch, drift};
 use crate::watch::{Cancelled, Watch};
 
+use self::dates::{date_text, days_in};
 use super::calibration_file::{StatedInFile, read_calibration};
-use super::dates::{date_text, days_in};
 
 /// Files of a folder that are looked at.
 const MAX_FILES: usize = 2_000;

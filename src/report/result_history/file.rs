@@ -6,9 +6,9 @@ use serde_json::{Value, json};
 use crate::verify::difference::{Difference, Known, PointShift, SIGNIFICANT_P};
 use crate::verify::drift::Change;
 
-use super::compared::{Compared, ComparedPoints, History, Order};
-use super::diagnosis_entry::vector;
-use super::result_file::transform;
+use super::super::diagnosis_entry::vector;
+use super::super::result_file::transform;
+use super::{Compared, ComparedPoints, History, Order};
 
 /// The format's name of a comparison.
 pub const COMPARISON_FORMAT: &str = "handeye-comparison";

@@ -1,4 +1,4 @@
-//! Wording of comparisons of calibrations, and of their history.
+//! Wording of comparisons of calibrations from files, and of their history.
 
 use crate::geometry::Vec3;
 use crate::text::digits::{decimals_for, signed};
