@@ -166,7 +166,7 @@ fn the_time_of_the_recording_can_count_instead() {
     assert_stations("recording", &imported.stations, "scan");
 }
 
-/// Whatever the file: the buffers of a file that is read in pieces, unpacked chunks, SQLite's pages, the preview.
+/// Whatever the file: the buffers of a file that is read in pieces, unpacked chunks, pages of a database, the preview.
 const BYTES_AT_ANY_RATE: usize = 6 << 20;
 const LONGEST: Duration = Duration::from_secs(5);
 const NUM_DAMAGED: usize = 1_500;
@@ -198,7 +198,9 @@ fn damaged_bags_are_refused_or_read_as_far_as_they_go() {
                 2 => bytes[at..end].fill(0xff),
                 3 => bytes[at..end].fill(0),
                 4 => {
-                    bytes.iter_mut().skip(at).take(8).for_each(|byte| *byte = u8::try_from(below(256)).expect("a byte"))
+                    for byte in bytes.iter_mut().skip(at).take(8) {
+                        *byte = u8::try_from(below(256)).expect("a byte");
+                    }
                 }
                 _ => bytes[at] ^= 1 << below(8),
             }

@@ -11,9 +11,10 @@ use egui_kittest::kittest::Queryable as _;
 use handeye::app::{Command, ImportInto, Workbench};
 use handeye::geometry::PoseNotation;
 use handeye::geometry::notation::LengthUnit;
-use handeye::session::import::{self, ImportOptions, Imported, Kind};
+use handeye::session::import::bag::Taking;
+use handeye::session::import::{self, BagOptions, ImportOptions, Imported, Kind};
 use handeye::session::{self, Target, samples};
-use handeye::text::{import as words, shell as shell_words, start as start_words};
+use handeye::text::{import as words, import_bag as bag_words, shell as shell_words, start as start_words};
 use handeye::ui::dialogs::SavePath;
 use handeye::ui::file_dialog::Purpose;
 use handeye::ui::import::{ImportMemory, ImportState};
@@ -163,6 +164,32 @@ fn a_tool_point_is_typed_as_six_numbers() {
     // The field held a 0 already.
     let z = tcp.translation_mm().z;
     assert!((z - 150.0).abs() < 1e-9 || (z - 15.0).abs() < 1e-9, "{z}");
+}
+
+#[test]
+fn a_bag_shows_its_topics_and_what_became_of_its_messages() {
+    let mut bench = Bench::empty();
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/bags/tf_cloud_db3");
+    bench.apply(Command::Import(vec![path]));
+    let report = bench.imported().notes.iter().find_map(|note| match note {
+        import::Note::Bag(_) => Some(words::note(note)),
+        _ => None,
+    });
+    assert_eq!(bench.imported().stations.len(), 3);
+    let mut harness = bench.harness();
+    harness.get_by_label(&report.expect("what became of the bag"));
+    harness.get_by_label(&words::setting(bag_words::PROFILE_TOPIC));
+    assert_eq!(harness.get_by_label(&words::setting(bag_words::FLANGE_FRAME)).value().as_deref(), Some("tool0"));
+    click(&mut harness, &words::setting(bag_words::TAKING));
+    pick(&mut harness, bag_words::taking(Taking::EveryProfile));
+    let bag = BagOptions { taking: Some(Taking::EveryProfile), ..BagOptions::default() };
+    let options = ImportOptions { bag, ..ImportOptions::default() };
+    assert_eq!(harness.state().commands, [Command::SetImportOptions(Box::new(options.clone()))]);
+    let bench = harness.state_mut();
+    bench.apply(Command::SetImportOptions(Box::new(options)));
+    // Every profile with a pose: more captures than stays, sweeps of one orientation together.
+    let captures: usize = bench.imported().stations.iter().map(|station| station.captures.len()).sum();
+    assert!(captures > 20, "{captures}");
 }
 
 #[test]

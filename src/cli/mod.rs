@@ -10,7 +10,9 @@ use clap::{Parser, Subcommand};
 
 pub mod cell;
 pub mod check;
+pub mod compare;
 pub mod export;
+pub mod history;
 pub mod import;
 pub mod plan;
 pub mod report;
@@ -57,6 +59,10 @@ pub enum Command {
     ToolFrame(tool_frame::ToolFrameArgs),
     /// Measures planes, teeth and diameters of a scanned part, and exports its points
     Scan(Box<scan::ScanArgs>),
+    /// Compares two calibrations: in the flange, at points, and with their σ
+    Compare(compare::CompareArgs),
+    /// Lists the calibrations of a folder over time: drift and jumps
+    History(history::HistoryArgs),
     /// Plans the stations to measure next
     Plan(plan::PlanArgs),
     /// Writes a simulated session with its truth
@@ -81,6 +87,8 @@ impl Command {
             Self::Export(args) => export::run(args),
             Self::ToolFrame(args) => tool_frame::run(args),
             Self::Scan(args) => scan::run(args),
+            Self::Compare(args) => compare::run(args),
+            Self::History(args) => history::run(args),
             Self::Plan(args) => plan::run(args),
             Self::Simulate(args) => simulate::run(args),
             Self::Cell(args) => cell::run(args),

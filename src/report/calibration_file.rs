@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
+use nalgebra::Matrix6;
 use serde_json::Value;
 use thiserror::Error;
 
@@ -98,6 +99,21 @@ pub struct ReadCalibration {
     pub check: MatrixCheck,
     /// It, or the nearest to a matrix that is no rotation.
     pub flange_from_sensor: Transform<Flange, Sensor>,
+    /// What else a result file says of it.
+    pub stated: StatedInFile,
+}
+
+/// What a result file says of a calibration beside itself; a matrix says nothing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StatedInFile {
+    /// Covariance of (rotation about the sensor's axes in rad, translation along the flange's axes in mm).
+    pub covariance: Option<Matrix6<f64>>,
+    /// The point that its headline speaks of, mm.
+    pub reference_point_in_sensor_mm: Option<Vec3>,
+    /// Where the stations' targets were seen, mm.
+    pub points_in_sensor_mm: Vec<Vec3>,
+    /// `date` of the file, as it stands there.
+    pub date: Option<String>,
 }
 
 impl ReadCalibration {
@@ -115,10 +131,10 @@ impl ReadCalibration {
 /// # Errors
 /// [`CalibrationFileError`].
 pub fn read_calibration(path: &Path) -> Result<ReadCalibration, CalibrationFileError> {
-    let Written { name, mount, matrix } = read_matrix(path)?;
+    let Written { name, mount, matrix, stated } = read_matrix(path)?;
     let check = matrix.check();
     match matrix.nearest() {
-        Some(flange_from_sensor) => Ok(ReadCalibration { name, mount, check, flange_from_sensor }),
+        Some(flange_from_sensor) => Ok(ReadCalibration { name, mount, check, flange_from_sensor, stated }),
         None => Err(CalibrationFileError::NoRotation { file: path.to_owned(), determinant: check.determinant }),
     }
 }
@@ -128,6 +144,7 @@ struct Written {
     name: String,
     mount: Mount,
     matrix: GivenMatrix,
+    stated: StatedInFile,
 }
 
 fn read_matrix(path: &Path) -> Result<Written, CalibrationFileError> {
@@ -145,7 +162,7 @@ fn read_matrix(path: &Path) -> Result<Written, CalibrationFileError> {
     }
     let matrix =
         parse_matrix(text).map_err(|refusal| CalibrationFileError::NoMatrix { file: path.to_owned(), refusal })?;
-    Ok(Written { name: file_name, mount: Mount::OnFlange, matrix })
+    Ok(Written { name: file_name, mount: Mount::OnFlange, matrix, stated: StatedInFile::default() })
 }
 
 fn from_result(path: &Path, value: &Value) -> Result<Written, CalibrationFileError> {
@@ -175,7 +192,40 @@ fn from_result(path: &Path, value: &Value) -> Result<Written, CalibrationFileErr
         let found = found.map_or(&Value::Null, |(calibration, _)| calibration);
         return Err(invalid(&format!("{list}[].flange_from_sensor"), found, "an object with a 4 × 4 matrix"));
     };
-    Ok(Written { name: entry[name].as_str().unwrap_or("?").to_owned(), mount, matrix })
+    let uncertainty = &entry["uncertainty"];
+    let covariance = match &uncertainty["covariance"] {
+        Value::Null => None,
+        found => {
+            let expected = "6 × 6 finite numbers with no negative variance";
+            let at = format!("{list}[].uncertainty.covariance");
+            Some(covariance_of(found).ok_or_else(|| invalid(&at, found, expected))?)
+        }
+    };
+    let points = entry["stations"].as_array().map(Vec::as_slice).unwrap_or_default();
+    let stated = StatedInFile {
+        covariance,
+        reference_point_in_sensor_mm: vector_of(&uncertainty["reference_point_in_sensor_mm"]),
+        points_in_sensor_mm: points.iter().filter_map(|station| vector_of(&station["target_in_sensor_mm"])).collect(),
+        date: value["date"].as_str().map(str::to_owned),
+    };
+    Ok(Written { name: entry[name].as_str().unwrap_or("?").to_owned(), mount, matrix, stated })
+}
+
+fn vector_of(value: &Value) -> Option<Vec3> {
+    let numbers: Vec<f64> = value.as_array()?.iter().map(Value::as_f64).collect::<Option<_>>()?;
+    (numbers.len() == 3).then(|| Vec3::from_column_slice(&numbers))
+}
+
+fn covariance_of(value: &Value) -> Option<Matrix6<f64>> {
+    let rows = value.as_array().filter(|rows| rows.len() == 6)?;
+    let mut numbers = Vec::with_capacity(36);
+    for row in rows {
+        let row = row.as_array().filter(|row| row.len() == 6)?;
+        numbers.extend(row.iter().map(Value::as_f64).collect::<Option<Vec<f64>>>()?);
+    }
+    let covariance = Matrix6::from_row_slice(&numbers);
+    let is_usable = numbers.iter().all(|v| v.is_finite()) && covariance.diagonal().iter().all(|v| *v >= 0.0);
+    is_usable.then_some((covariance + covariance.transpose()) / 2.0)
 }
 
 fn list<'a>(value: &'a Value, name: &str) -> &'a [Value] {

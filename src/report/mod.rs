@@ -18,6 +18,7 @@ pub mod judgement;
 pub mod markdown;
 pub mod pdf;
 pub mod result_file;
+pub mod result_history;
 pub mod scan_file;
 pub mod tool_frame;
 pub mod verification;

@@ -6,7 +6,9 @@
 
 pub mod ball_centre;
 pub mod cross_target;
+pub mod difference;
 pub mod distances;
+pub mod drift;
 pub mod figures;
 pub mod matrix_check;
 pub mod matrix_text;

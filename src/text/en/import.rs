@@ -177,6 +177,8 @@ pub const BALL: &str = "ball";
 pub const PLATE: &str = "right-angle plate";
 /// Target.
 pub const POINT: &str = "tip or pin";
+/// Target.
+pub const WORKPIECE: &str = "scanned part";
 /// Button.
 pub const NEW_SESSION: &str = "Make a new session";
 /// Button.

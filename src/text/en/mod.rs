@@ -8,6 +8,7 @@ pub mod cell;
 pub mod check;
 pub mod cli;
 pub mod compare;
+pub mod compare_results;
 pub mod conventions;
 pub mod diagnosis;
 pub mod diagnosis_panel;

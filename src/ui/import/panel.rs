@@ -32,9 +32,11 @@ enum TargetKind {
     Ball,
     RightAnglePlate,
     Point,
+    Workpiece,
 }
 
-const TARGETS: [TargetKind; 3] = [TargetKind::Ball, TargetKind::RightAnglePlate, TargetKind::Point];
+const TARGETS: [TargetKind; 4] =
+    [TargetKind::Ball, TargetKind::RightAnglePlate, TargetKind::Point, TargetKind::Workpiece];
 
 /// What is typed in the preview of one draft.
 #[derive(Debug, Default)]
@@ -85,6 +87,7 @@ impl ImportState {
             TargetKind::Ball => self.ball()?,
             TargetKind::RightAnglePlate => Target::RightAnglePlate,
             TargetKind::Point => Target::Point,
+            TargetKind::Workpiece => Target::Workpiece,
         };
         check_edges(stations, &target).map_err(|_| words::EDGES_OF_NO_PLATE)?;
         Ok(ImportInto::NewSession { name, target })
@@ -324,6 +327,7 @@ fn new_session_fields(ui: &mut Ui, state: &mut ImportState) {
             TargetKind::Ball => words::BALL,
             TargetKind::RightAnglePlate => words::PLATE,
             TargetKind::Point => words::POINT,
+            TargetKind::Workpiece => words::WORKPIECE,
         }
         .to_owned()
     };

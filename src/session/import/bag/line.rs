@@ -188,7 +188,9 @@ mod tests {
     fn the_flat_axis_tells_x_and_z() {
         for (flat, expected) in [(0, "y,z"), (1, "x,z"), (2, "y,x")] {
             let mut line = [[0.0, 1.0, 2.0], [1.0, 3.0, 5.0], [2.5, 4.0, 4.0], [f64::NAN; 3]];
-            line.iter_mut().for_each(|point| point[flat] = 0.25);
+            for point in &mut line {
+                point[flat] = 0.25;
+            }
             let axes = detect(&points(&line)).expect("flat").expect("enough points");
             assert_eq!(axes.to_string(), expected);
             assert_eq!(expected.parse(), Ok(axes));

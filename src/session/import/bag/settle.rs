@@ -132,9 +132,9 @@ mod tests {
 
     const MS: i64 = 1_000_000;
 
-    fn pose(time_ms: i64, x_mm: f64, about_z: f64) -> TimedPose {
+    fn pose(time_ms: i32, x_mm: f64, about_z: f64) -> TimedPose {
         TimedPose {
-            time_ns: time_ms * MS,
+            time_ns: i64::from(time_ms) * MS,
             translation: Vec3::new(x_mm, 0.0, 0.0),
             rotation: so3::exp(Vec3::new(0.0, 0.0, about_z)),
         }
@@ -145,7 +145,7 @@ mod tests {
     #[test]
     fn stays_are_found_between_moves_and_their_noise_is_averaged() {
         // 1 s at 0 mm, 1 s on the way, 1 s at 10 mm, 100 Hz; ±10 µm of noise.
-        let x_mm = |idx: i64| ((idx - 100).clamp(0, 100) as f64) * 0.1;
+        let x_mm = |idx: i32| f64::from((idx - 100).clamp(0, 100)) * 0.1;
         let poses: Vec<TimedPose> =
             (0..300).map(|idx| pose(idx * 10, x_mm(idx) + if idx % 2 == 0 { 0.01 } else { -0.01 }, 0.0)).collect();
         let stretches = still(&poses, &STILL);
@@ -159,7 +159,7 @@ mod tests {
 
     #[test]
     fn a_turn_on_the_spot_and_a_single_pose_are_no_stay() {
-        let turning: Vec<TimedPose> = (0..300).map(|idx| pose(idx * 10, 0.0, idx as f64 * 0.01)).collect();
+        let turning: Vec<TimedPose> = (0..300).map(|idx| pose(idx * 10, 0.0, f64::from(idx) * 0.01)).collect();
         assert_eq!(still(&turning, &STILL), []);
         assert_eq!(still(&[pose(0, 0.0, 0.0)], &STILL), []);
         assert_eq!(still(&[], &STILL), []);
@@ -168,12 +168,12 @@ mod tests {
     #[test]
     fn a_slow_creep_is_parted_but_a_stay_with_an_approach_is_one() {
         // 1 mm/s: 0.05 mm in 50 ms, never still for 500 ms.
-        let creep: Vec<TimedPose> = (0..300).map(|idx| pose(idx * 10, idx as f64 * 0.01, 0.0)).collect();
+        let creep: Vec<TimedPose> = (0..300).map(|idx| pose(idx * 10, f64::from(idx) * 0.01, 0.0)).collect();
         assert_eq!(still(&creep, &STILL), []);
         // The last 40 µm of an approach, then 2 s of standing.
         let approach: Vec<TimedPose> =
-            (0..260).map(|idx| pose(idx * 10, 0.04 * (1.0 - (idx as f64 / 60.0).min(1.0)), 0.0)).collect();
-        assert_eq!(still(&approach, &STILL), [0..260]);
+            (0..260).map(|idx| pose(idx * 10, 0.04 * (1.0 - (f64::from(idx) / 60.0).min(1.0)), 0.0)).collect();
+        assert_eq!(still(&approach, &STILL), vec![0..260; 1]);
     }
 
     #[test]

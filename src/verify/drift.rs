@@ -1,0 +1,266 @@
+//! Calibrations of one sensor over time: how far each is from the first and from the one before, whether they drift, and
+//! where they jumped.
+
+use std::ops::Range;
+
+use crate::geometry::{Vec3, stats};
+
+use super::difference::{Difference, PointShift, Stated, difference, point_shift};
+
+/// A calibration at a time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Epoch {
+    /// Days, or a number where no dates are known; ascending.
+    pub at: f64,
+    /// What it was.
+    pub calibration: Stated,
+}
+
+/// How one calibration stands to another.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Change {
+    /// In the flange.
+    pub difference: Difference,
+    /// At the reference point.
+    pub shift: PointShift,
+}
+
+/// A straight line through the values of one axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trend {
+    /// Change a unit of time.
+    pub slope: f64,
+    /// Its σ: from the scatter about the line, and no less than what the calibrations state.
+    pub std: f64,
+    /// The value of the line at the time of the first calibration.
+    pub at_first: f64,
+    /// Whether chance alone makes such a slope in less than a hundredth of all cases.
+    pub is_significant: bool,
+}
+
+/// What became of a calibration over time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drift {
+    /// One entry a calibration: against the first; the first stands against itself.
+    pub from_first: Vec<Change>,
+    /// One entry a calibration but the first: against the one before.
+    pub from_previous: Vec<Change>,
+    /// Places of calibrations that are further from the one before than chance and the others' steps explain.
+    pub jumps: Vec<usize>,
+    /// Along x, y, z of the flange, mm, and about them, rad, a unit of time, between the jumps; empty with fewer than
+    /// [`MIN_FOR_TREND`] calibrations or where they have one time.
+    pub trends: Vec<Trend>,
+}
+
+/// With fewer a line says nothing: two values are left over to judge it by.
+pub const MIN_FOR_TREND: usize = 4;
+/// With fewer steps their own scatter is not known.
+const MIN_STEPS_FOR_SCATTER: usize = 5;
+/// So many σ: of a hundred steps in three directions chance makes one in fifty histories.
+const JUMP_STD: f64 = 4.0;
+/// A slope is significant beyond what chance does with this probability.
+const SIGNIFICANT: f64 = 0.99;
+/// The median of slopes scatters by so much more than the best line through normal errors.
+const THEIL_SEN_LOSS: f64 = 1.02;
+
+/// Looks at calibrations in the order of time; `reference_in_sensor_mm` is the point at which jumps are looked for.
+#[must_use]
+pub fn drift(epochs: &[Epoch], reference_in_sensor_mm: Vec3) -> Drift {
+    let change = |from: &Epoch, to: &Epoch| Change {
+        difference: difference(&from.calibration, &to.calibration),
+        shift: point_shift(&from.calibration, &to.calibration, reference_in_sensor_mm),
+    };
+    let Some(first) = epochs.first() else {
+        return Drift { from_first: Vec::new(), from_previous: Vec::new(), jumps: Vec::new(), trends: Vec::new() };
+    };
+    let from_first: Vec<Change> = epochs.iter().map(|epoch| change(first, epoch)).collect();
+    let from_previous: Vec<Change> = epochs.windows(2).map(|pair| change(&pair[0], &pair[1])).collect();
+    let jumps = jumps(&from_previous);
+    let times: Vec<f64> = epochs.iter().map(|epoch| epoch.at).collect();
+    let trends = (0..6)
+        .map_while(|axis| {
+            let values: Vec<f64> = from_first.iter().map(|change| value(&change.difference, axis)).collect();
+            let stds = epochs.iter().map(|epoch| {
+                let covariance = epoch.calibration.covariance?;
+                // About the flange's axes instead of the sensor's: the largest of the three.
+                let variance = match axis {
+                    0..3 => covariance[(axis + 3, axis + 3)],
+                    _ => (0..3).map(|idx| covariance[(idx, idx)]).fold(0.0, f64::max),
+                };
+                Some(variance.max(0.0).sqrt()).filter(|std| std.is_finite())
+            });
+            let stated_std = stats::rms(stds.flatten());
+            trend(&times, &values, &jumps, stated_std)
+        })
+        .collect();
+    Drift { from_first, from_previous, jumps, trends }
+}
+
+/// Along x, y, z, then about them.
+fn value(difference: &Difference, axis: usize) -> f64 {
+    if axis < 3 { difference.translation_mm[axis] } else { difference.rotation_rad[axis - 3] }
+}
+
+/// The steps that stand out at the reference point, by the place of the later calibration.
+fn jumps(steps: &[Change]) -> Vec<usize> {
+    /// Equal calibrations scatter by nothing, and rounding is no jump.
+    const LEAST_MM: f64 = 1e-6;
+    let scatter = |axis: usize| {
+        let mut sizes: Vec<f64> = steps.iter().map(|step| step.shift.shift_mm[axis]).collect();
+        (sizes.len() >= MIN_STEPS_FOR_SCATTER).then(|| stats::robust_std_about_zero(&mut sizes))
+    };
+    let scatters = [0, 1, 2].map(scatter);
+    let stands_out = |step: &Change| {
+        (0..3).any(|axis| {
+            let stated = step.shift.std_mm.map(|std| std[axis]);
+            let scale = scatters[axis]
+                .into_iter()
+                .chain(stated)
+                .fold(None, |most: Option<f64>, std| Some(most.map_or(std, |most| most.max(std))));
+            scale.is_some_and(|scale| step.shift.shift_mm[axis].abs() > JUMP_STD * scale.max(LEAST_MM))
+        })
+    };
+    steps.iter().enumerate().filter(|(_, step)| stands_out(step)).map(|(idx, _)| idx + 1).collect()
+}
+
+/// The median of the slopes between all pairs with no jump between them: a level that is fitted to each stretch takes nothing
+/// from the slope, where a jump that is subtracted would bring the noise of two calibrations into all that follow.
+///
+/// `None` with too few values, or at one time.
+fn trend(times: &[f64], values: &[f64], jumps: &[usize], stated_std: f64) -> Option<Trend> {
+    let mut ends: Vec<usize> = jumps.to_vec();
+    ends.push(values.len());
+    let mut start = 0;
+    let stretches: Vec<Range<usize>> = ends
+        .into_iter()
+        .map(|end| {
+            let stretch = start..end;
+            start = end;
+            stretch
+        })
+        .collect();
+    let left_over = values.len().checked_sub(stretches.len() + 1).filter(|left_over| *left_over > 0)?;
+    if values.len() < MIN_FOR_TREND {
+        return None;
+    }
+    let mut slopes = Vec::new();
+    for stretch in &stretches {
+        for later in stretch.clone() {
+            let pairs = (stretch.start..later).filter(|earlier| times[later] > times[*earlier]);
+            slopes.extend(pairs.map(|earlier| (values[later] - values[earlier]) / (times[later] - times[earlier])));
+        }
+    }
+    if slopes.is_empty() {
+        return None;
+    }
+    let slope = stats::median(&mut slopes);
+    let first = times.first().copied()?;
+    let offsets: Vec<f64> = times.iter().zip(values).map(|(t, y)| y - slope * (t - first)).collect();
+    let (mut residuals, mut squared_lever) = (Vec::with_capacity(values.len()), 0.0);
+    let mut at_first = 0.0;
+    for stretch in &stretches {
+        let level = stats::median(&mut offsets[stretch.clone()].to_vec());
+        if stretch.start == 0 {
+            at_first = level;
+        }
+        residuals.extend(offsets[stretch.clone()].iter().map(|offset| offset - level));
+        let mean = mean(&times[stretch.clone()]);
+        squared_lever += times[stretch.clone()].iter().map(|t| (t - mean) * (t - mean)).sum::<f64>();
+    }
+    #[expect(clippy::cast_precision_loss, reason = "files of a folder")]
+    let (count, left_over) = (values.len() as f64, left_over as f64);
+    let scatter = stats::robust_std_about_zero(&mut residuals) * (count / left_over).sqrt();
+    let lever = squared_lever.sqrt();
+    let std = THEIL_SEN_LOSS * scatter.max(stated_std) / lever;
+    let limit = stats::f_quantile(SIGNIFICANT, 1.0, left_over).sqrt();
+    let is_significant = slope.abs() > limit * std && slope.abs() * lever > f64::EPSILON * 1e3;
+    Some(Trend { slope, std, at_first, is_significant })
+}
+
+fn mean(values: &[f64]) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "files of a folder")]
+    let count = values.len().max(1) as f64;
+    values.iter().sum::<f64>() / count
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Matrix6, Vector6};
+
+    use super::*;
+    use crate::geometry::stats::SplitMix;
+    use crate::geometry::{Transform, so3};
+
+    const STD_MM: f64 = 0.01;
+    const STD_RAD: f64 = 5e-5;
+
+    /// Calibrations a week apart, with noise, a drift along x and a jump along z.
+    fn history(count: u32, drift_mm_a_day: f64, jump: Option<(u32, f64)>, is_stated: bool) -> Vec<Epoch> {
+        let mut random = SplitMix::new(11);
+        // The sum of twelve uniform values is normal enough.
+        #[expect(clippy::cast_precision_loss, reason = "below a thousand")]
+        let mut noise = |std: f64| std * ((0..12).map(|_| random.below(1000) as f64 / 1000.0).sum::<f64>() - 6.0);
+        (0..count)
+            .map(|idx| {
+                let at = f64::from(idx) * 7.0;
+                let jumped = jump.map_or(0.0, |(from, mm)| if idx >= from { mm } else { 0.0 });
+                let translation = Vec3::new(
+                    10.0 + drift_mm_a_day * at + noise(STD_MM),
+                    noise(STD_MM),
+                    120.0 + jumped + noise(STD_MM),
+                );
+                let rotation = so3::exp(Vec3::new(noise(STD_RAD), 2.0 + noise(STD_RAD), noise(STD_RAD)));
+                let stds = Vector6::new(STD_RAD, STD_RAD, STD_RAD, STD_MM, STD_MM, STD_MM);
+                let covariance = is_stated.then(|| Matrix6::from_diagonal(&stds.map(|std| std * std)));
+                Epoch {
+                    at,
+                    calibration: Stated {
+                        flange_from_sensor: Transform::from_parts(translation, rotation),
+                        covariance,
+                    },
+                }
+            })
+            .collect()
+    }
+
+    const POINT: Vec3 = Vec3::new(0.0, 0.0, 60.0);
+
+    #[test]
+    fn a_drift_and_a_jump_are_told_apart_with_and_without_stated_uncertainty() {
+        for is_stated in [true, false] {
+            let found = drift(&history(16, 0.003, Some((9, 0.3)), is_stated), POINT);
+            assert_eq!(found.jumps, [9], "stated {is_stated}");
+            let x = found.trends[0];
+            assert!(x.is_significant && (x.slope - 0.003).abs() < 4.0 * x.std, "{x:?}");
+            // What the best two parallel lines through 9 and 7 values would know, within the scatter of a σ from 16.
+            let squares = |count: f64| count * (count * count - 1.0) / 12.0;
+            let best = STD_MM / (7.0 * (squares(9.0) + squares(7.0)).sqrt());
+            assert!(x.std > 0.5 * best && x.std < 2.5 * best, "{} and {best}", x.std);
+            assert!(!found.trends[2].is_significant, "without its jump z does not drift: {:?}", found.trends[2]);
+        }
+    }
+
+    #[test]
+    fn noise_alone_neither_drifts_nor_jumps() {
+        let found = drift(&history(30, 0.0, None, true), POINT);
+        assert_eq!(found.jumps, [0; 0]);
+        assert!(found.trends.iter().all(|trend| !trend.is_significant), "{:?}", found.trends);
+    }
+
+    #[test]
+    fn few_equal_or_simultaneous_calibrations_are_no_trend() {
+        assert_eq!(drift(&[], POINT).from_first.len(), 0);
+        let one = drift(&history(1, 0.0, None, false), POINT);
+        assert_eq!((one.from_first.len(), one.from_previous.len(), one.trends.len()), (1, 0, 0));
+        assert!(drift(&history(3, 0.1, None, false), POINT).trends.is_empty());
+        let mut at_once = history(6, 0.0, None, false);
+        for epoch in &mut at_once {
+            epoch.at = 5.0;
+        }
+        assert!(drift(&at_once, POINT).trends.is_empty());
+        let same = vec![history(1, 0.0, None, false)[0].clone(); 8];
+        let same: Vec<Epoch> = (0_u32..).zip(same).map(|(at, epoch)| Epoch { at: f64::from(at), ..epoch }).collect();
+        let found = drift(&same, POINT);
+        assert!(found.jumps.is_empty() && found.trends.iter().all(|trend| !trend.is_significant));
+    }
+}
