@@ -1,5 +1,6 @@
 //! The page printed to PDF by a browser that is installed: it knows how to break pages better than we could.
 
+use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -68,6 +69,12 @@ fn print_with(browser: &'static str, page: &Path, pdf: &Path) -> Option<Result<P
         Err(error) => return Some(not_printed(error.to_string())),
     };
     let fresh = profile.path().join("report.pdf");
+    // What it says may be long, and a pipe that nobody empties would hold it up.
+    let said = profile.path().join("said.txt");
+    let stderr = match File::create(&said) {
+        Ok(file) => file,
+        Err(error) => return Some(not_printed(error.to_string())),
+    };
     let mut command = Command::new(browser);
     command
         .args(["--headless", "--disable-gpu", "--no-first-run", "--no-pdf-header-footer"])
@@ -76,7 +83,7 @@ fn print_with(browser: &'static str, page: &Path, pdf: &Path) -> Option<Result<P
         .arg(page)
         .stdin(Stdio::null())
         .stdout(Stdio::null())
-        .stderr(Stdio::null());
+        .stderr(stderr);
     let mut running = match command.spawn() {
         Ok(running) => running,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return None,
@@ -98,7 +105,15 @@ fn print_with(browser: &'static str, page: &Path, pdf: &Path) -> Option<Result<P
     };
     Some(match std::fs::copy(&fresh, pdf) {
         Ok(_) if status.success() => Ok(pdf.to_path_buf()),
-        Ok(_) => not_printed(status.to_string()),
-        Err(error) => not_printed(format!("{status}, {error}")),
+        Err(error) if status.success() => not_printed(error.to_string()),
+        _ => not_printed(last_line(&said).unwrap_or_else(|| status.to_string())),
     })
+}
+
+/// The last thing that the browser said, without the time and place in its code that stand before it.
+fn last_line(said: &Path) -> Option<String> {
+    let said = std::fs::read(said).ok()?;
+    let said = String::from_utf8_lossy(&said);
+    let line = said.lines().rev().map(str::trim).find(|line| !line.is_empty())?;
+    Some(line.rsplit_once("] ").map_or(line, |(_, message)| message).trim_end_matches('.').to_owned())
 }

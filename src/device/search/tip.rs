@@ -349,11 +349,11 @@ mod tests {
 
     #[test]
     fn strays_are_nothing_that_sticks_out() {
-        let z_mm = |idx: u32| if idx % 9 == 4 { 40.0 } else { 80.0 };
-        let (x_mm, mut z_mm): (Vec<f64>, Vec<f64>) = (0..100).map(|idx| (0.1 * f64::from(idx), z_mm(idx))).unzip();
-        let height = |z_mm: &[f64]| height_mm(&Profile::new(x_mm.clone(), z_mm.to_vec()).expect("as long"), None);
+        let at = |idx: u32| (0.1 * f64::from(idx), Some(if idx % 9 == 4 { 40.0 } else { 80.0 }));
+        let (x_mm, mut z_mm): (Vec<f64>, Vec<Option<f64>>) = (0..100).map(at).unzip();
+        let height = |z_mm: &[Option<f64>]| height_mm(&Profile::new(x_mm.clone(), z_mm).expect("as long"), None);
         assert_eq!(height(&z_mm), None);
-        z_mm[50..58].fill(70.0);
+        z_mm[50..58].fill(Some(70.0));
         assert_eq!(height(&z_mm), Some(-70.0));
     }
 
