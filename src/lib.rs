@@ -10,7 +10,7 @@
 //! | 9 | [`cli`] | the commands without a window |
 //! | 8 | [`ui`] | egui panels: the only code that names egui |
 //! | 7 | [`app`] | the workbench: document, history, results, jobs, notices |
-//! | 6 | [`report`] | result files, digits |
+//! | 6 | [`report`] | what was computed of a session as files, pages, tables and figures; tool frames |
 //! | 5 | [`text`] | wording |
 //! | 4 | [`device`], [`diagnose`], [`simulate`] | robots and sensors, the search for the largest arc, the simulated cell · what is wrong with a session, and its remedies · simulated sessions |
 //! | 3 | [`session`], [`plan`], [`verify`] | the document: model, edits, history, table, file format, imports, checks, measuring · where to measure next · what a calibration is worth on other data |

@@ -353,7 +353,7 @@ mod tests {
         let (x_mm, mut z_mm): (Vec<f64>, Vec<Option<f64>>) = (0..100).map(at).unzip();
         let height = |z_mm: &[Option<f64>]| height_mm(&Profile::new(x_mm.clone(), z_mm).expect("as long"), None);
         assert_eq!(height(&z_mm), None);
-        z_mm[50..58].fill(Some(70.0));
+        z_mm[51..57].fill(Some(70.0));
         assert_eq!(height(&z_mm), Some(-70.0));
     }
 

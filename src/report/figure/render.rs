@@ -58,7 +58,7 @@ pub(super) fn svg(size: [f64; 2], ink: &[Ink], alt: &str) -> Result<String, Figu
 pub(super) fn png(size: [f64; 2], ink: &[Ink], pixels_per_point: f64) -> Result<RgbImage, FigureError> {
     let scale = pixels_per_point * f64::from(SUPERSAMPLING);
     let (width, height) = whole(size, pixels_per_point);
-    let num_pixels = u64::from(width) * u64::from(height) * u64::from(SUPERSAMPLING).pow(2);
+    let num_pixels = u64::from(width).saturating_mul(u64::from(height)).saturating_mul(u64::from(SUPERSAMPLING).pow(2));
     if !(pixels_per_point.is_finite() && pixels_per_point > 0.0) || num_pixels == 0 || num_pixels > MOST_PIXELS {
         return Err(FigureError::Resolution { pixels_per_point });
     }

@@ -52,7 +52,7 @@ pub const NOT_GATHERED: &str = "The report was not made.";
 /// Button.
 pub const GATHER: &str = "Make the report";
 /// Heading of what the report holds.
-pub const SECTIONS: &str = "The report holds";
+pub const SECTIONS: &str = "Sections";
 /// Label of a field.
 pub const OPERATOR: &str = "Operator";
 /// Label of a field.

@@ -15,6 +15,8 @@ use super::panel::View;
 
 /// Room between the two matrices, points.
 const BETWEEN: f32 = 24.0;
+/// Width of a matrix from which its rotation has room for five decimals, points.
+const LEAST_FOR_FIVE: f32 = 300.0;
 /// Height of the card for a matrix from elsewhere, points.
 const PASTE_HEIGHT: f32 = 316.0;
 /// Rows of its field.
@@ -105,13 +107,14 @@ fn side_by_side(ui: &mut Ui, view: &View<'_>, chosen: &mut [Option<String>; 2]) 
 }
 
 fn matrix_line(row: &mut RowCells<'_>, width: f32, matrix: &Matrix4<f64>, line: usize) {
+    // One hundred-thousandth is a micrometre at 100 mm from the flange; a narrow window has no room for that.
+    let decimals = if width < LEAST_FOR_FIVE { 4 } else { 5 };
     for column in 0..4 {
         let value = matrix[(line, column)];
         let text = match (line, column) {
             (3, _) => widgets::fixed(value, 0),
             (_, 3) => widgets::fixed(value, 3),
-            // One hundred-thousandth is a micrometre at 100 mm from the flange.
-            _ => widgets::fixed(value, 5),
+            _ => widgets::fixed(value, decimals),
         };
         let color = theme::palette(row.ui()).text;
         row.word(width / 4.0, &text, color);

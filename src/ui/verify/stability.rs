@@ -21,8 +21,8 @@ use super::panel::View;
 
 /// Width of the column of labels, points.
 const LABEL_WIDTH: f32 = 112.0;
-/// Least width of a coordinate, points: a sign and three decimals.
-const LEAST_WIDTH: f32 = 62.0;
+/// Least width of a coordinate, points: a third of the longest name of a method.
+const LEAST_WIDTH: f32 = 72.0;
 /// Width of a field for a coordinate, points.
 const FIELD_WIDTH: f32 = 84.0;
 

@@ -1,6 +1,6 @@
 //! White cards with a header row, the frame of everything in the window.
 
-use egui::{Align, Frame, Layout, Response, RichText, Sense, Stroke, Ui, UiBuilder, vec2};
+use egui::{Align, Frame, Layout, Response, RichText, Sense, Stroke, TextWrapMode, Ui, UiBuilder, vec2};
 
 use crate::ui::theme;
 
@@ -56,7 +56,11 @@ fn heading_row(ui: &mut Ui, title: RichText, right: impl FnOnce(&mut Ui)) {
     let inner = rect.shrink2(vec2(theme::GAP, 0.0));
     let mut row = ui.new_child(UiBuilder::new().max_rect(inner).layout(Layout::left_to_right(Align::Center)));
     row.label(title);
-    row.with_layout(Layout::right_to_left(Align::Center), right);
+    row.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        // In a narrow window it gives way to the title.
+        ui.style_mut().wrap_mode = Some(TextWrapMode::Truncate);
+        right(ui);
+    });
     let stroke = Stroke::new(1.0, theme::palette(ui).hairline);
     ui.painter().hline(rect.x_range(), rect.bottom(), stroke);
     ui.add_space(1.0);
