@@ -98,10 +98,16 @@ impl Command {
     }
 }
 
+/// Prints a line beside what a command has to say.
+pub(crate) fn remark(message: &dyn std::fmt::Display) {
+    // With nowhere to say it, the result is still one.
+    writeln!(std::io::stderr(), "handeye: {message}").ok();
+}
+
 /// Prints the one line that goes with a failure.
 pub fn fail(exit_code: u8, message: &dyn std::fmt::Display) -> ExitCode {
     // With nowhere to complain to, the exit status must do.
-    writeln!(std::io::stderr(), "handeye: {message}").ok();
+    remark(message);
     ExitCode::from(exit_code)
 }
 

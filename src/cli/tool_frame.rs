@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use crate::calibrate::Verdict;
+use crate::calibrate::verdict::judge;
 use crate::report::best_solution;
 use crate::report::calibration_file::read_calibration;
 use crate::report::tool_frame::{Format, Name, Parent, ToolFrame, formats};
@@ -78,6 +80,9 @@ fn frame_of(file: &Path, args: &ToolFrameArgs) -> Result<ToolFrame, Refusal> {
     let best = best_solution(&session, &mut Unwatched)
         .unwrap_or_else(|cancelled| Err(cancelled.to_string()))
         .map_err(|reason| (EXIT_NOTHING_COMPUTED, reason))?;
+    if judge(&best).0 == Verdict::NotUsable {
+        super::remark(&words::NOT_USABLE);
+    }
     Ok(ToolFrame::of_solution(&best, name, args.number))
 }
 

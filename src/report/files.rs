@@ -1,13 +1,15 @@
 //! The files of a report, and the folder that they are written into.
 
-use std::io::{Cursor, Write as _};
-use std::path::{Path, PathBuf};
+use std::collections::BTreeMap;
+use std::io::{Cursor, ErrorKind, Write as _};
+use std::path::{Component, Path, PathBuf};
 
 use image::ImageFormat;
 use thiserror::Error;
 
 use crate::whole_file;
 
+use super::checksum::sha256;
 use super::csv_tables::csv_table;
 use super::document::{Document, exports};
 use super::evidence::Evidence;
@@ -22,6 +24,10 @@ pub const HTML: &str = "report.html";
 pub const MARKDOWN: &str = "report.md";
 /// The result file, as `solve --json` prints it.
 pub const RESULT: &str = "result.json";
+/// What a report consists of: a line a file, as `sha256sum` prints and checks them.
+pub const SUMS: &str = "report.sha256";
+/// The page as a browser prints it.
+pub const PDF: &str = "report.pdf";
 /// The folder of the tables.
 pub const TABLES: &str = "tables";
 /// The folder of the figures.
@@ -48,6 +54,15 @@ pub enum ReportError {
         folder: PathBuf,
         /// The operating system's words.
         problem: std::io::Error,
+    },
+    /// There is a file that no report has written.
+    #[error(
+        "{} is there already, and no report has written it; choose another folder, or move it away",
+        file.display()
+    )]
+    Foreign {
+        /// The file.
+        file: PathBuf,
     },
     /// The operating system did not let us write a file.
     #[error("cannot write {}: {problem}", file.display())]
@@ -102,22 +117,100 @@ fn result(evidence: &Evidence) -> String {
     format!("{:#}\n", result_file(&evidence.session, results, examination.as_ref()))
 }
 
-/// Writes the files into a folder, which is made where it is missing. Each is replaced in one step or not at all; other files
-/// there are left alone. Gives the files that were written.
+/// Writes the files into a folder, which is made where it is missing, and a list of them with their checksums. Each is replaced
+/// in one step or not at all. What an earlier report has written there and this one does not is removed, unless somebody has
+/// changed it since; a file of anybody else's is never replaced. Gives the files that were written.
 ///
 /// # Errors
-/// [`ReportError`]; the files before the one that it names are written.
+/// [`ReportError`]. After [`ReportError::Foreign`] nothing is written, after another the files before the one that it names.
 pub fn write_files(files: &[ReportFile], folder: &Path) -> Result<Vec<PathBuf>, ReportError> {
-    let mut written = Vec::with_capacity(files.len());
+    let earlier = earlier_files(&folder.join(SUMS));
+    let foreign = files.iter().find(|file| !earlier.contains_key(&file.path) && folder.join(&file.path).exists());
+    if let Some(file) = foreign {
+        return Err(ReportError::Foreign { file: folder.join(&file.path) });
+    }
+    let mut written = Vec::with_capacity(files.len() + 1);
     for file in files {
-        let path = folder.join(&file.path);
-        if let Some(parent) = path.parent() {
-            std::fs::create_dir_all(parent)
-                .map_err(|problem| ReportError::NoFolder { folder: parent.to_path_buf(), problem })?;
+        written.push(write_file(&folder.join(&file.path), &file.bytes)?);
+    }
+    let sums: Vec<String> = files.iter().map(|file| format!("{}  {}\n", sha256(&file.bytes), file.path)).collect();
+    written.push(write_file(&folder.join(SUMS), sums.concat().as_bytes())?);
+    let is_of_now = |path: &str| files.iter().any(|file| file.path == path);
+    for (path, sum) in earlier.iter().filter(|(path, _)| !is_of_now(path)) {
+        let path = folder.join(path);
+        if std::fs::read(&path).is_ok_and(|bytes| sha256(&bytes) == *sum) {
+            remove(&path)?;
         }
-        whole_file::replace(&path, |opened| opened.write_all(&file.bytes))
-            .map_err(|problem: std::io::Error| ReportError::Unwritable { file: path.clone(), problem })?;
-        written.push(path);
+    }
+    // No two prints have the same bytes, but a page that was printed from another report must not stay beside this one.
+    if !earlier.is_empty() {
+        remove(&folder.join(PDF))?;
     }
     Ok(written)
+}
+
+fn write_file(path: &Path, bytes: &[u8]) -> Result<PathBuf, ReportError> {
+    if let Some(parent) = path.parent() {
+        std::fs::create_dir_all(parent)
+            .map_err(|problem| ReportError::NoFolder { folder: parent.to_path_buf(), problem })?;
+    }
+    whole_file::replace(path, |opened| opened.write_all(bytes))
+        .map_err(|problem: std::io::Error| ReportError::Unwritable { file: path.to_path_buf(), problem })?;
+    Ok(path.to_path_buf())
+}
+
+fn remove(path: &Path) -> Result<(), ReportError> {
+    match std::fs::remove_file(path) {
+        Err(problem) if problem.kind() != ErrorKind::NotFound => {
+            Err(ReportError::Unwritable { file: path.to_path_buf(), problem })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The files that an earlier report has listed with their checksums; none without such a list. Places outside of the folder
+/// are not ours.
+fn earlier_files(sums: &Path) -> BTreeMap<String, String> {
+    let text = std::fs::read_to_string(sums).unwrap_or_default();
+    let entry = |line: &str| {
+        let (sum, path) = line.split_once("  ")?;
+        let is_below = Path::new(path).components().all(|part| matches!(part, Component::Normal(_)));
+        is_below.then(|| (path.to_owned(), sum.to_owned()))
+    };
+    text.lines().filter_map(entry).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn file(path: &str, text: &str) -> ReportFile {
+        ReportFile { path: path.to_owned(), bytes: text.as_bytes().to_vec() }
+    }
+
+    #[test]
+    fn a_later_report_replaces_the_earlier_one_and_nothing_else() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let place = |path: &str| folder.path().join(path);
+        write_files(&[file(RESULT, "1"), file("tables/a.csv", "a"), file("tables/b.csv", "b")], folder.path())
+            .expect("written");
+        std::fs::write(place("tables/b.csv"), "noted by hand").expect("written");
+        std::fs::write(place("mine.txt"), "mine").expect("written");
+        std::fs::write(place(PDF), "printed").expect("written");
+        write_files(&[file(RESULT, "2")], folder.path()).expect("written");
+        assert_eq!(std::fs::read_to_string(place(RESULT)).expect("there"), "2");
+        assert!(!place("tables/a.csv").exists() && !place(PDF).exists());
+        assert!(place("tables/b.csv").exists() && place("mine.txt").exists());
+    }
+
+    #[test]
+    fn what_no_report_has_written_is_never_replaced() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let session = folder.path().join(RESULT);
+        std::fs::write(&session, "a session of that name").expect("written");
+        let refused = write_files(&[file("tables/a.csv", "a"), file(RESULT, "1")], folder.path());
+        assert!(matches!(refused, Err(ReportError::Foreign { file }) if file == session));
+        assert_eq!(std::fs::read_to_string(&session).expect("there"), "a session of that name");
+        assert!(!folder.path().join("tables").exists());
+    }
 }

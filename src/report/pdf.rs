@@ -1,11 +1,16 @@
 //! The page printed to PDF by a browser that is installed: it knows how to break pages better than we could.
 
 use std::fs::File;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use thiserror::Error;
+
+use crate::whole_file;
+
+use super::files::PDF;
 
 /// Browsers that print without a window, by their names on the path.
 const BROWSERS: [&str; 8] = [
@@ -57,7 +62,15 @@ pub enum PdfError {
 pub fn print(page: &Path) -> Result<PathBuf, PdfError> {
     let page = page.canonicalize().map_err(|problem| PdfError::NoPlace { file: page.to_path_buf(), problem })?;
     let pdf = page.with_extension("pdf");
-    BROWSERS.into_iter().find_map(|browser| print_with(browser, &page, &pdf)).unwrap_or(Err(PdfError::NoBrowser))
+    let mut refusal = None;
+    for printed in BROWSERS.into_iter().filter_map(|browser| print_with(browser, &page, &pdf)) {
+        match printed {
+            Ok(pdf) => return Ok(pdf),
+            // Another one may do better.
+            Err(error) => refusal = refusal.or(Some(error)),
+        }
+    }
+    Err(refusal.unwrap_or(PdfError::NoBrowser))
 }
 
 /// `None` if there is no such browser.
@@ -68,7 +81,7 @@ fn print_with(browser: &'static str, page: &Path, pdf: &Path) -> Option<Result<P
         Ok(profile) => profile,
         Err(error) => return Some(not_printed(error.to_string())),
     };
-    let fresh = profile.path().join("report.pdf");
+    let fresh = profile.path().join(PDF);
     // What it says may be long, and a pipe that nobody empties would hold it up.
     let said = profile.path().join("said.txt");
     let stderr = match File::create(&said) {
@@ -103,7 +116,8 @@ fn print_with(browser: &'static str, page: &Path, pdf: &Path) -> Option<Result<P
             Err(error) => return Some(not_printed(error.to_string())),
         }
     };
-    Some(match std::fs::copy(&fresh, pdf) {
+    let printed = std::fs::read(&fresh);
+    Some(match printed.and_then(|bytes| whole_file::replace(pdf, |file| file.write_all(&bytes))) {
         Ok(_) if status.success() => Ok(pdf.to_path_buf()),
         Err(error) if status.success() => not_printed(error.to_string()),
         _ => not_printed(last_line(&said).unwrap_or_else(|| status.to_string())),

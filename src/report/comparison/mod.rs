@@ -266,18 +266,23 @@ fn method_table(session: &Session, solution: &Solution) -> MethodTable {
     }
 }
 
+/// The station's label, with the number of the capture where there are several.
+#[must_use]
+pub fn capture_label(station: &Station, capture_idx: usize) -> String {
+    match station.captures.len() {
+        1 => station.label.clone(),
+        _ => format!("{}.{}", station.label, capture_idx + 1),
+    }
+}
+
 /// One row a capture of a station at the plate.
 fn plate_rows(plate: &PlateFound, station_idx: usize, station: &Station) -> Vec<Row> {
     let edge = station.edge.map_or_else(String::new, |edge| format!(" {}", edge_name(edge)));
-    let label_of = |capture_idx: usize| match station.captures.len() {
-        1 => format!("{}{edge}", station.label),
-        _ => format!("{}.{}{edge}", station.label, capture_idx + 1),
-    };
     let of_capture = |(capture_idx, capture): (usize, &Capture)| {
         let found =
             plate.points.iter().find(|point| (point.station_idx, point.capture_idx) == (station_idx, capture_idx));
         let used = found.map(|point| UsedStation::on_plate(plate, point));
-        row(station_idx, station, label_of(capture_idx), Some(capture), used)
+        row(station_idx, station, capture_label(station, capture_idx) + &edge, Some(capture), used)
     };
     station.captures.iter().enumerate().map(of_capture).collect()
 }

@@ -50,8 +50,34 @@ pub(super) fn svg(size: [f64; 2], ink: &[Ink], alt: &str) -> Result<String, Figu
         escaped(alt)
     )
     .ok();
-    svg.push_str(rest);
+    push_with_lengths(&mut svg, rest, ink);
     Ok(svg)
+}
+
+/// Appends a drawing in which every text says how long it is: where the typeface is missing, another one, which may be wider,
+/// is set into the same length.
+fn push_with_lengths(svg: &mut String, drawing: &str, ink: &[Ink]) {
+    const TEXT: &str = "<text ";
+    let mut parts = drawing.split(TEXT);
+    svg.push_str(parts.next().unwrap_or_default());
+    // Texts stand in the order of their labels.
+    let mut labels = ink.iter().filter_map(written_label);
+    for part in parts {
+        svg.push_str(TEXT);
+        if let Some(label) = labels.next() {
+            let length = typeface::width(&label.text, label.size, label.weight) * UNITS_PER_POINT;
+            write!(svg, "textLength=\"{length:.0}\" lengthAdjust=\"spacingAndGlyphs\" ").ok();
+        }
+        svg.push_str(part);
+    }
+}
+
+/// The label that is written of this, if one is.
+fn written_label(ink: &Ink) -> Option<&Label> {
+    match ink {
+        Ink::Label(label) if !label.text.is_empty() && label.at.iter().all(|value| value.is_finite()) => Some(label),
+        _ => None,
+    }
 }
 
 /// Draws into pixels, so many a point.
@@ -135,7 +161,11 @@ fn draw<B: DrawingBackend>(backend: &mut B, scale: f64, size: [f64; 2], ink: &[I
                     backend.draw_circle(centre, radius, &stroke_look(*stroke, scale), false).map_err(failed)?;
                 }
             }
-            Ink::Label(label) => write_label(backend, label, scale)?,
+            Ink::Label(_) => {
+                if let Some(label) = written_label(piece) {
+                    write_label(backend, label, scale)?;
+                }
+            }
         }
     }
     Ok(())
@@ -169,9 +199,6 @@ fn unit_places(places: &[Place], scale: f64) -> Vec<BackendCoord> {
 }
 
 fn write_label<B: DrawingBackend>(backend: &mut B, label: &Label, scale: f64) -> Result<(), FigureError> {
-    if label.text.is_empty() || !label.at.iter().all(|value| value.is_finite()) {
-        return Ok(());
-    }
     // An SVG hangs the text half an x height above its place.
     let lift = HALF_X_HEIGHT * label.size;
     let [x, y] = label.at;

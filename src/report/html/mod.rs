@@ -12,8 +12,9 @@ use super::figure::{Figure, FigureError};
 
 /// The style sheet, within the file.
 const STYLE: &str = include_str!("report.css");
-/// Tables with more columns are set smaller.
-const DENSE_ABOVE: usize = 10;
+/// Tables with so many columns are set smaller, and those with still more as small as print is read.
+const COMPACT_FROM: usize = 8;
+const DENSE_FROM: usize = 11;
 /// Tables with fewer rows stay on one page.
 const KEPT_TOGETHER_BELOW: usize = 16;
 /// So do texts with fewer lines.
@@ -177,7 +178,11 @@ fn write_table(out: &mut String, table: &Table) {
     let is_beside = is_short && table.columns.len() <= BESIDE_UP_TO;
     let classes = [
         Some("table"),
-        (table.columns.len() > DENSE_ABOVE).then_some("dense"),
+        match table.columns.len() {
+            DENSE_FROM.. => Some("dense"),
+            COMPACT_FROM.. => Some("compact"),
+            _ => None,
+        },
         is_short.then_some("together"),
         is_beside.then_some("beside"),
     ];

@@ -38,6 +38,10 @@ pub fn heading(
 /// Neither a file nor a list is wanted.
 pub const NO_FILE: &str = "found no file, expected a session, a result file or a matrix";
 
+/// A warning beside a text that is written all the same.
+pub const NOT_USABLE: &str =
+    "the calibration is not usable: `handeye solve` says why; mend that before it is entered at a controller";
+
 /// A line of the list of formats.
 #[must_use]
 pub fn list_line(id: &str, label: &str, units: &str) -> String {

@@ -1,7 +1,8 @@
 //! Every station, as the result to use has it.
 
 use crate::calibrate::validation::Influence;
-use crate::calibrate::{Method, PlateFound, Solution, StationSolution, Sweep, solution_of};
+use crate::calibrate::{Method, PlateFound, PlatePoint, Solution, StationSolution, Sweep, solution_of};
+use crate::report::comparison::capture_label;
 use crate::report::document::{Block, Cell, Column, Table, typeset};
 use crate::report::evidence::{Evidence, TargetEvidence};
 use crate::session::Station;
@@ -97,19 +98,23 @@ fn points(target: &TargetEvidence, plate: &PlateFound) -> Parts {
     let columns = vec![
         Column::words(words::NUMBER, "station"),
         Column::words(words::EDGE, "edge"),
-        Column::number(words::CAPTURES_COLUMN, None, "captures"),
         Column::number(words::ERROR_SIZE, Some("mm"), "off_edge_mm"),
         Column::number(words::LEFT_OUT_COLUMN, Some("mm"), "leave_one_out_mm"),
     ];
-    let row = |(idx, station): (usize, &Station)| {
-        let point = plate.points.iter().find(|point| point.station_idx == idx);
+    let cells = |label: String, point: Option<&PlatePoint>| {
         vec![
-            Cell::words(&station.label),
+            Cell::words(&label),
             point.map_or_else(|| Cell::words(words::STATION_LEFT_OUT), |point| Cell::words(point.edge.symbol())),
-            Cell::count(station.captures.len()),
             Cell::maybe(point.map(|point| point.off_edge_mm.norm()), DECIMALS),
             Cell::maybe(point.and_then(|point| point.leave_one_out_mm), DECIMALS),
         ]
     };
-    (columns, target.session.stations.iter().enumerate().map(row).collect(), words::EDGE_POINTS_NOTE)
+    let rows = |(idx, station): (usize, &Station)| -> Vec<Vec<Cell>> {
+        let of_capture = |capture_idx: usize| {
+            let label = capture_label(station, capture_idx);
+            cells(label, plate.points.iter().find(|point| (point.station_idx, point.capture_idx) == (idx, capture_idx)))
+        };
+        (0..station.captures.len()).map(of_capture).collect()
+    };
+    (columns, target.session.stations.iter().enumerate().flat_map(rows).collect(), words::EDGE_POINTS_NOTE)
 }

@@ -1,7 +1,10 @@
 //! The calibration in the syntax of the robot's maker, each text read back and compared.
 
-use crate::report::document::Block;
+use crate::calibrate::Verdict;
+use crate::diagnose::Severity;
+use crate::report::document::{Block, Finding};
 use crate::report::evidence::Evidence;
+use crate::report::judgement::Judgement;
 use crate::report::tool_frame::{Format, Name, RoundTrip, ToolFrame, formats};
 use crate::text::report as words;
 
@@ -39,7 +42,7 @@ pub fn exports(evidence: &Evidence) -> Vec<Export> {
 }
 
 pub(in crate::report::document) fn blocks(evidence: &Evidence) -> Vec<Block> {
-    let Some((_, solution)) = evidence.answer() else { return Vec::new() };
+    let Some((target, solution)) = evidence.answer() else { return Vec::new() };
     let exports = exports(evidence);
     if exports.is_empty() {
         return vec![Block::Paragraph(words::NO_TOOL_FRAME.to_owned())];
@@ -54,7 +57,17 @@ pub(in crate::report::document) fn blocks(evidence: &Evidence) -> Vec<Block> {
         ),
         text: export.text,
     };
+    let judgement = Judgement::on(&target.session, solution, target.diagnosis());
+    let warning = (judgement.verdict == Verdict::NotUsable).then(|| {
+        Block::Findings(vec![Finding {
+            severity: Severity::Wrong,
+            code: words::NOT_FOR_USE_CODE.to_owned(),
+            message: words::not_for_use(&judgement.reason),
+            remedy: words::NOT_FOR_USE_REMEDY.to_owned(),
+        }])
+    });
     std::iter::once(Block::Paragraph(words::tool_frames_intro(solution.mount).to_owned()))
+        .chain(warning)
         .chain(exports.into_iter().map(code))
         .collect()
 }

@@ -60,6 +60,9 @@ pub fn normality_line(normality: &Normality) -> String {
     if normality.p_value < 0.01 {
         return format!("residuals: not normally distributed; by chance this happens {}", chance(normality.p_value));
     }
+    if normality.p_value < 0.05 {
+        return format!("residuals: hardly normally distributed (p = {:.2})", normality.p_value);
+    }
     format!("residuals: normally distributed (p = {:.2})", normality.p_value)
 }
 

@@ -272,6 +272,17 @@ pub const fn tool_frames_intro(mount: Mount) -> &'static str {
     }
 }
 
+/// The code of the finding that the controller is not to be given the calibration.
+pub const NOT_FOR_USE_CODE: &str = "not-usable";
+/// What to do instead.
+pub const NOT_FOR_USE_REMEDY: &str = "Mend what the diagnosis names and calibrate again before anything is entered.";
+
+/// The verdict beside the texts for the controller.
+#[must_use]
+pub fn not_for_use(reason: &str) -> String {
+    format!("This calibration is not usable. {reason}")
+}
+
 /// An export with its round trip.
 #[must_use]
 pub fn tool_frame_caption(label: &str, units: &str, file: &str, translation_mm: f64, rotation_deg: f64) -> String {
