@@ -23,6 +23,9 @@ const HEIGHT: f32 = super::machine::HEIGHT;
 /// Height and width of an edge's box, points.
 const BOX_SIZE: egui::Vec2 = vec2(196.0, 48.0);
 
+/// Width from which the pendant's buttons have room for a label, points.
+const LEAST_FOR_LABEL: f32 = 250.0;
+
 /// Shows the card.
 pub fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     let is_plate = desk.view.is_plate();
@@ -118,7 +121,10 @@ fn pendant(ui: &mut Ui, desk: &mut Desk<'_>) {
         return;
     }
     ui.add_space(12.0);
-    ui.label(theme::dim(ui, words::PENDANT));
+    // In a narrow window the buttons' hints say whose they are.
+    if ui.available_width() >= LEAST_FOR_LABEL {
+        ui.label(theme::dim(ui, words::PENDANT));
+    }
     for edge in [Edge::P, Edge::Q] {
         let command = CellCommand::JogToEdge(edge);
         let name = words::jog_to(edge);
