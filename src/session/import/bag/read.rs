@@ -338,7 +338,7 @@ impl Reader<'_, '_> {
             poses.sort_by_key(|pose| pose.time_ns);
             poses.dedup_by_key(|pose| pose.time_ns);
         } else {
-            poses = self.poses_of_frames(options, has_header)?;
+            poses = self.poses_of_frames(&topic, options, has_header)?;
         }
         self.report.num_poses = poses.len();
         if poses.is_empty() {
@@ -351,10 +351,14 @@ impl Reader<'_, '_> {
         Ok(poses)
     }
 
-    fn poses_of_frames(&mut self, options: &mut BagOptions, has_header: bool) -> Result<Vec<TimedPose>, ImportError> {
+    fn poses_of_frames(
+        &mut self,
+        topic: &Topic,
+        options: &mut BagOptions,
+        has_header: bool,
+    ) -> Result<Vec<TimedPose>, ImportError> {
         let bag = self.bag;
-        let topics: Vec<&Topic> =
-            bag.topics.iter().filter(|topic| topic.kind == Some(MessageKind::Transforms)).collect();
+        let topics = frames_with(&bag.topics, &topic.name);
         let mut frames = Frames::default();
         self.each(&topics, true, &mut |report, message| {
             let is_static = topics.get(message.topic_idx).is_some_and(|topic| is_static(&topic.name));
@@ -421,6 +425,13 @@ impl Reader<'_, '_> {
     }
 }
 
+/// The topic that was chosen, and those with the frames that never change of the same robot, or of all robots.
+fn frames_with<'t>(topics: &'t [Topic], chosen: &str) -> Vec<&'t Topic> {
+    let namespace = chosen.rsplit_once('/').map_or("", |(namespace, _)| namespace);
+    let belongs = |name: &str| name == chosen || name == "/tf_static" || name == format!("{namespace}/tf_static");
+    topics.iter().filter(|topic| topic.kind == Some(MessageKind::Transforms) && belongs(&topic.name)).collect()
+}
+
 /// Where frames are sent that never change.
 fn is_static(topic: &str) -> bool {
     topic.ends_with("tf_static")
@@ -432,4 +443,25 @@ fn listed(frames: &Frames) -> String {
     let names = frames.names();
     let more = if names.len() > MAX_NAMED { ", …" } else { "" };
     format!("{}{more}", names[..names.len().min(MAX_NAMED)].join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_of_another_robot_are_not_mixed_in() {
+        let names = ["/r1/tf", "/r1/tf_static", "/r2/tf", "/r2/tf_static", "/tf", "/tf_static"];
+        let topics = names.map(|name| Topic {
+            name: name.to_owned(),
+            type_name: "tf2_msgs/msg/TFMessage".to_owned(),
+            kind: Some(MessageKind::Transforms),
+            num_messages: 1,
+        });
+        let with = |chosen: &str| -> Vec<&str> {
+            frames_with(&topics, chosen).into_iter().map(|topic| topic.name.as_str()).collect()
+        };
+        assert_eq!(with("/r1/tf"), ["/r1/tf", "/r1/tf_static", "/tf_static"]);
+        assert_eq!(with("/tf"), ["/tf", "/tf_static"]);
+    }
 }
