@@ -70,6 +70,13 @@ pub(super) struct Points {
     pub points: Vec<[f64; 3]>,
 }
 
+impl Points {
+    /// Whether any is there.
+    pub fn has_any(&self) -> bool {
+        self.points.iter().any(|point| point.iter().all(|value| value.is_finite()))
+    }
+}
+
 /// Nanoseconds of a header; 0 is no time.
 fn stamp(cdr: &mut Cdr<'_>) -> Result<Option<i64>, BadMessage> {
     let (seconds, nanoseconds) = (cdr.i32()?, cdr.u32()?);
@@ -146,7 +153,9 @@ pub(super) fn laser_scan(message: &[u8]) -> Result<Points, BadMessage> {
         // A scan has thousands of rays, not 2⁵³.
         #[expect(clippy::cast_precision_loss, reason = "see above")]
         let angle = step.mul_add(idx as f64, angle_min);
-        let is_valid = range.is_finite() && range >= range_min && !(range > range_max && range_max > 0.0);
+        // Drivers write 0 where nothing came back, also where they leave the limits at 0.
+        let is_valid =
+            range.is_finite() && range > 0.0 && range >= range_min && !(range > range_max && range_max > 0.0);
         points.push(if is_valid { [range * angle.cos(), range * angle.sin(), 0.0] } else { [f64::NAN; 3] });
     }
     Ok(Points { stamp_ns, points })
@@ -213,7 +222,11 @@ pub(super) fn point_cloud(message: &[u8]) -> Result<Points, BadMessage> {
     // No more points than there are bytes: every point has at least twelve.
     let mut points = Vec::with_capacity(width * height);
     for row in data.chunks_exact(row_step.max(1)).take(height) {
-        points.extend(row.chunks_exact(point_step).take(width).map(|point| [x, y, z].map(|field| read(point, field))));
+        points.extend(row.chunks_exact(point_step).take(width).map(|point| {
+            let point = [x, y, z].map(|field| read(point, field));
+            // Clouds that are to have no NaN have the origin where nothing was seen.
+            if point == [0.0; 3] { [f64::NAN; 3] } else { point }
+        }));
     }
     Ok(Points { stamp_ns, points })
 }

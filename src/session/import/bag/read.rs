@@ -404,19 +404,26 @@ impl Reader<'_, '_> {
                 Some(MessageKind::LaserScan) => messages::laser_scan(message.data)?,
                 _ => messages::point_cloud(message.data)?,
             };
-            if axes.is_none() {
-                axes = line::detect(&points)?;
-            }
-            if unit.is_none() && points.points.iter().flatten().any(|value| value.is_finite()) {
+            let spreads = line::spreads(&points);
+            if let Some(spreads) = spreads {
+                if axes.is_none() {
+                    axes = Some(line::detect(spreads)?);
+                }
                 let is_metres = topic.kind == Some(MessageKind::LaserScan) || line::largest(&points) <= MAX_METRES;
-                unit = Some(if is_metres { LengthUnit::Metres } else { LengthUnit::Millimetres });
+                unit.get_or_insert(if is_metres { LengthUnit::Metres } else { LengthUnit::Millimetres });
             }
             let time_ns = points.stamp_ns.filter(|_| clock == Clock::Header).unwrap_or(message.log_time_ns);
             report.num_profiles += 1;
             captures.take(time_ns, poses, tolerance_ns, report, || {
-                // What the axes are cannot be told before a line was seen; a reading without points needs none.
-                let axes = axes.unwrap_or(ProfileAxes::across(2));
-                line::profile(&points, axes, unit.unwrap_or(LengthUnit::Metres).in_mm(), z_sign)
+                match (axes, unit) {
+                    (Some(axes), Some(unit)) => line::profile(&points, axes, unit.in_mm(), z_sign),
+                    // What the axes and the unit are cannot be told before a line was seen.
+                    _ if points.has_any() => Err(BadMessage::Value {
+                        found: "too few points to tell the axes and the unit".to_owned(),
+                        needed: "a line in an earlier reading; or name the axes and the unit",
+                    }),
+                    _ => Ok(Profile::default()),
+                }
             })
         })?;
         options.bag.axes = axes;
