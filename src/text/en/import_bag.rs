@@ -96,6 +96,10 @@ pub fn report(report: &BagReport) -> String {
         said.push(format!("{} from {topic}, {} paired", count(report.num_profiles, "profile"), report.num_paired));
     }
     let mut left_out = Vec::new();
+    if report.num_in_gaps > 0 {
+        let poses = count(report.num_in_gaps, "pose");
+        left_out.push(format!("{poses} at times around which a frame between the two was not sent"));
+    }
     if report.num_moving > 0 {
         left_out.push(format!("{} taken while the robot moved", count(report.num_moving, "profile")));
     }

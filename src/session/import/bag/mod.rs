@@ -143,6 +143,8 @@ pub struct BagReport {
     pub frames: Option<[String; 2]>,
     /// Poses that were read.
     pub num_poses: usize,
+    /// Times of poses at which a frame of the chain was not sent for too long, left out.
+    pub num_in_gaps: usize,
     /// Where the profiles came from.
     pub profile_topic: Option<String>,
     /// Profiles that were read.

@@ -344,6 +344,9 @@ impl Reader<'_, '_> {
         if poses.is_empty() {
             let found = match self.report.unreadable.first() {
                 Some(unreadable) => format!("no readable pose on {} ({})", topic.name, unreadable.first),
+                None if self.report.num_in_gaps > 0 => {
+                    format!("no time on {} around which every frame of the chain was sent", topic.name)
+                }
                 None => format!("no pose on {}", topic.name),
             };
             return Err(self.error(found, "poses of the robot", "choose another topic, or record again"));
@@ -378,8 +381,10 @@ impl Reader<'_, '_> {
         if let Some(unknown) = [&base, &flange].into_iter().find(|frame| !frames.names().contains(frame)) {
             return Err(self.error(format!("no frame {unknown}"), "a frame of the bag", &remedy()));
         }
-        let poses =
-            frames.base_from_flange(&base, &flange).map_err(|(found, needed)| self.error(found, &needed, &remedy()))?;
+        let (poses, num_in_gaps) = frames
+            .base_from_flange(&base, &flange, ns(options.pair_within_ms))
+            .map_err(|(found, needed)| self.error(found, &needed, &remedy()))?;
+        self.report.num_in_gaps = num_in_gaps;
         self.report.frames = Some([base.clone(), flange.clone()]);
         (options.base_frame, options.flange_frame) = (Some(base), Some(flange));
         Ok(poses)
