@@ -15,7 +15,7 @@ use super::cdr::BadMessage;
 use super::frames::Frames;
 use super::line;
 use super::messages::{self, MessageKind, Points, TimedPose};
-use super::settle::{Stillness, mean, pose_at, still};
+use super::settle::{Standing, Stillness, pose_at, still};
 use super::storage::{self, RawMessage};
 use super::{Bag, BagError, BagOptions, BagReport, Clock, ProfileAxes, Taking, Topic, Unreadable};
 
@@ -58,12 +58,12 @@ pub(in crate::session::import) fn read(
     };
     let stays: Vec<Stay> = match options.bag.taking {
         Some(Taking::EveryProfile) => Vec::new(),
-        _ => still(&poses, &stillness)
+        _ => still(&poses, &stillness, &mut || reader.progress.tick())?
             .into_iter()
-            .map(|range| Stay {
+            .map(|Standing { range, pose }| Stay {
                 from_ns: poses[range.start].time_ns,
                 to_ns: poses[range.end - 1].time_ns,
-                pose: mean(&poses[range]),
+                pose,
                 readings: Vec::new(),
             })
             .collect(),
