@@ -348,7 +348,8 @@ fn summary(path: &Path) -> Result<Option<Directory>, BagError> {
         return Ok(None);
     }
     let outcome = walk.records(&mut |record| {
-        has_counts |= matches!(record, Record::Counts(_));
+        // Writers that do not count leave the counts empty.
+        has_counts |= matches!(&record, Record::Counts(counts) if !counts.is_empty());
         directory.take(record);
         Ok(())
     });
