@@ -32,10 +32,14 @@ pub(super) struct Frames {
     /// By the child's name.
     edges: HashMap<String, Edge>,
     num_transforms: usize,
+    /// Transforms that hang a frame below another parent than before, or fix one that moves: passed over.
+    pub num_contradicting: usize,
+    /// Transforms at a time at which the frame was sent already: passed over.
+    pub num_of_same_time: usize,
 }
 
 impl Frames {
-    /// Keeps a transform; answers whether there was room. One that hangs a frame below another parent is passed over.
+    /// Keeps a transform; answers whether there was room. One that contradicts others is passed over.
     pub fn add(&mut self, transform: TimedTransform, is_static: bool) -> bool {
         let TimedTransform { parent, child, parent_from_child } = transform;
         let edge = self.edges.entry(child).or_insert_with(|| Edge {
@@ -43,14 +47,18 @@ impl Frames {
             is_static,
             parent_from_child: Vec::new(),
         });
-        if edge.parent != parent {
+        if edge.parent != parent || (is_static && !edge.is_static) {
+            self.num_contradicting += 1;
             return true;
         }
-        if is_static {
-            // A static frame that is sent again is the same frame.
-            edge.parent_from_child.truncate(0);
-        } else if self.num_transforms >= MAX_TRANSFORMS {
+        if !is_static && self.num_transforms >= MAX_TRANSFORMS {
             return false;
+        }
+        if edge.is_static {
+            // A static frame that is sent again is the same frame; one that moves after all was never fixed.
+            self.num_contradicting += if is_static { 0 } else { edge.parent_from_child.len() };
+            edge.parent_from_child.clear();
+            edge.is_static = is_static;
         }
         self.num_transforms += 1;
         edge.parent_from_child.push(parent_from_child);
@@ -60,8 +68,10 @@ impl Frames {
     /// Brings each frame's transforms into the order of time, of equal times the first.
     pub fn sort(&mut self) {
         for edge in self.edges.values_mut() {
+            let num_sent = edge.parent_from_child.len();
             edge.parent_from_child.sort_by_key(|pose| pose.time_ns);
             edge.parent_from_child.dedup_by_key(|pose| pose.time_ns);
+            self.num_of_same_time += num_sent - edge.parent_from_child.len();
         }
     }
 
@@ -242,6 +252,19 @@ mod tests {
         assert_eq!(poses.iter().map(|pose| pose.time_ns).collect::<Vec<_>>(), [0, 50, 90]);
         let expected = Vec3::new(1.0 + 3.0 * (half_turn / 2.0).cos(), 3.0 * (half_turn / 2.0).sin(), 0.0);
         assert!((poses[1].translation - expected).norm() < 1e-12, "{:?}", poses[1]);
+    }
+
+    #[test]
+    fn a_static_frame_does_not_wipe_one_that_moves_and_what_is_passed_over_is_counted() {
+        let moving = [0, 100, 100].map(|time_ns| ("base", "tool0", false, pose(time_ns, 1.0, 0.0)));
+        let fixed = [("base", "tool0", true, pose(0, 9.0, 0.0))];
+        let other = [("table", "tool0", false, pose(50, 9.0, 0.0))];
+        for order in [[&fixed[..], &moving[..], &other[..]].concat(), [&moving[..], &other[..], &fixed[..]].concat()] {
+            let frames = frames(&order);
+            let (poses, _) = frames.base_from_flange("base", "tool0", 50).expect("connected");
+            assert_eq!(poses.iter().map(|pose| pose.translation.x).collect::<Vec<_>>(), [1.0, 1.0]);
+            assert_eq!((frames.num_contradicting, frames.num_of_same_time), (2, 1));
+        }
     }
 
     #[test]

@@ -143,6 +143,10 @@ pub struct BagReport {
     pub frames: Option<[String; 2]>,
     /// Poses that were read.
     pub num_poses: usize,
+    /// Poses at the time of another, left out.
+    pub num_of_same_time: usize,
+    /// Transforms that hang a frame below another parent than before, or fix one that moves, left out.
+    pub num_contradicting: usize,
     /// Times of poses at which a frame of the chain was not sent for too long, left out.
     pub num_in_gaps: usize,
     /// Where the profiles came from.

@@ -336,7 +336,9 @@ impl Reader<'_, '_> {
                 Ok(())
             })?;
             poses.sort_by_key(|pose| pose.time_ns);
+            let num_sent = poses.len();
             poses.dedup_by_key(|pose| pose.time_ns);
+            self.report.num_of_same_time = num_sent - poses.len();
         } else {
             poses = self.poses_of_frames(&topic, options, has_header)?;
         }
@@ -371,6 +373,8 @@ impl Reader<'_, '_> {
             Ok(())
         })?;
         frames.sort();
+        (self.report.num_contradicting, self.report.num_of_same_time) =
+            (frames.num_contradicting, frames.num_of_same_time);
         let base = options.base_frame.clone().or_else(|| frames.likely_base());
         let flange = options.flange_frame.clone().or_else(|| frames.likely_flange());
         let (Some(base), Some(flange)) = (base, flange) else {
