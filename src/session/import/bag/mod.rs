@@ -204,11 +204,14 @@ impl Bag {
             // Why a file ends early is said when it is read.
             let (topics, _) = storage::topics(path, storage)?;
             for storage::FileTopic { name, type_name, encoding, num_messages } in topics {
-                if let Some(topic) = bag.topics.iter_mut().find(|topic| topic.name == name) {
-                    topic.num_messages += num_messages;
-                } else {
-                    let kind = MessageKind::of_type(&type_name).filter(|_| encoding == "cdr");
-                    bag.topics.push(Topic { name, type_name, kind, num_messages });
+                let kind = MessageKind::of_type(&type_name).filter(|_| encoding == "cdr");
+                let topic = Topic { name, type_name, kind, num_messages };
+                match bag.topics.iter_mut().find(|known| known.name == topic.name) {
+                    Some(known) if known.type_name == topic.type_name => known.num_messages += num_messages,
+                    // Of two types under one name the one that we can read.
+                    Some(known) if known.kind.is_none() && topic.kind.is_some() => *known = topic,
+                    Some(_) => {}
+                    None => bag.topics.push(topic),
                 }
             }
             bag.files.push((path.clone(), storage));

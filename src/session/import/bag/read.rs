@@ -278,7 +278,9 @@ impl Reader<'_, '_> {
         take: &mut dyn FnMut(&mut BagReport, RawMessage<'_>) -> Result<(), BadMessage>,
     ) -> Result<(), ImportError> {
         for (path, storage) in &self.bag.files {
-            let wanted = |name: &str| topics.iter().position(|topic| topic.name == name);
+            let wanted = |name: &str, type_name: &str| {
+                topics.iter().position(|topic| topic.name == name && topic.type_name == type_name)
+            };
             let (report, num_messages, progress) = (&mut self.report, &mut self.num_messages, &mut *self.progress);
             let damage = storage::stream(path, *storage, &wanted, &mut |message| {
                 *num_messages += 1;
