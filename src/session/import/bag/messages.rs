@@ -161,6 +161,9 @@ pub(super) fn laser_scan(message: &[u8]) -> Result<Points, BadMessage> {
     Ok(Points { stamp_ns, points })
 }
 
+/// Points of a cloud; a line has thousands.
+const MAX_POINTS: usize = 16_000_000;
+
 /// Where a coordinate stands in a point of a cloud.
 #[derive(Clone, Copy, Debug)]
 struct Field {
@@ -209,6 +212,15 @@ pub(super) fn point_cloud(message: &[u8]) -> Result<Points, BadMessage> {
             data.len()
         )));
     }
+    let mut order: Vec<(usize, usize)> = [x, y, z].iter().map(|field| field.offset).zip(ends).collect();
+    order.sort_unstable();
+    if order.windows(2).any(|pair| pair[0].1 > pair[1].0) {
+        return Err(layout(format!("x, y and z that overlap, at {}, {} and {}", x.offset, y.offset, z.offset)));
+    }
+    let num_points = width.saturating_mul(height);
+    if num_points > MAX_POINTS {
+        return Err(BadMessage::Value { found: format!("{num_points} points"), needed: "no more than 16 million" });
+    }
     let read = |point: &[u8], field: Field| -> f64 {
         let bytes = point.get(field.offset..).unwrap_or_default();
         if field.is_double {
@@ -220,7 +232,7 @@ pub(super) fn point_cloud(message: &[u8]) -> Result<Points, BadMessage> {
         }
     };
     // No more points than there are bytes: every point has at least twelve.
-    let mut points = Vec::with_capacity(width * height);
+    let mut points = Vec::with_capacity(num_points);
     for row in data.chunks_exact(row_step.max(1)).take(height) {
         points.extend(row.chunks_exact(point_step).take(width).map(|point| {
             let point = [x, y, z].map(|field| read(point, field));
