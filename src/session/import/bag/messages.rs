@@ -237,7 +237,7 @@ pub(super) fn point_cloud(message: &[u8]) -> Result<Points, BadMessage> {
         points.extend(row.chunks_exact(point_step).take(width).map(|point| {
             let point = [x, y, z].map(|field| read(point, field));
             // Clouds that are to have no NaN have the origin where nothing was seen.
-            if point == [0.0; 3] { [f64::NAN; 3] } else { point }
+            if point.iter().all(|value| *value == 0.0) { [f64::NAN; 3] } else { point }
         }));
     }
     Ok(Points { stamp_ns, points })
