@@ -96,6 +96,19 @@ pub fn report(report: &BagReport) -> String {
         said.push(format!("{} from {topic}, {} paired", count(report.num_profiles, "profile"), report.num_paired));
     }
     let mut left_out = Vec::new();
+    if report.num_of_same_time > 0 {
+        let poses = count(report.num_of_same_time, "pose");
+        left_out
+            .push(format!("{poses} at the time of another: where headers stand still, use the times of the recording"));
+    }
+    if report.num_contradicting > 0 {
+        let transforms = count(report.num_contradicting, "transform");
+        left_out.push(format!("{transforms} of a frame that had another parent, or that both moves and is static"));
+    }
+    if report.num_in_gaps > 0 {
+        let poses = count(report.num_in_gaps, "pose");
+        left_out.push(format!("{poses} at times around which a frame between the two was not sent"));
+    }
     if report.num_moving > 0 {
         left_out.push(format!("{} taken while the robot moved", count(report.num_moving, "profile")));
     }

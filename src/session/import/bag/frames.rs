@@ -6,6 +6,9 @@ use super::messages::{TimedPose, TimedTransform};
 
 /// Transforms that are kept; a robot that sends six of them 500 times a second fills it in a quarter of an hour.
 const MAX_TRANSFORMS: usize = 3_000_000;
+/// Between two transforms that are at most so many times as far apart as poses and profiles may be, a frame is believed
+/// to have moved steadily.
+const MAX_GAP: u64 = 4;
 /// Frames between a frame and the root; more are a circle.
 const MAX_DEPTH: usize = 64;
 
@@ -29,10 +32,14 @@ pub(super) struct Frames {
     /// By the child's name.
     edges: HashMap<String, Edge>,
     num_transforms: usize,
+    /// Transforms that hang a frame below another parent than before, or fix one that moves: passed over.
+    pub num_contradicting: usize,
+    /// Transforms at a time at which the frame was sent already: passed over.
+    pub num_of_same_time: usize,
 }
 
 impl Frames {
-    /// Keeps a transform; answers whether there was room. One that hangs a frame below another parent is passed over.
+    /// Keeps a transform; answers whether there was room. One that contradicts others is passed over.
     pub fn add(&mut self, transform: TimedTransform, is_static: bool) -> bool {
         let TimedTransform { parent, child, parent_from_child } = transform;
         let edge = self.edges.entry(child).or_insert_with(|| Edge {
@@ -40,14 +47,18 @@ impl Frames {
             is_static,
             parent_from_child: Vec::new(),
         });
-        if edge.parent != parent {
+        if edge.parent != parent || (is_static && !edge.is_static) {
+            self.num_contradicting += 1;
             return true;
         }
-        if is_static {
-            // A static frame that is sent again is the same frame.
-            edge.parent_from_child.truncate(0);
-        } else if self.num_transforms >= MAX_TRANSFORMS {
+        if !is_static && self.num_transforms >= MAX_TRANSFORMS {
             return false;
+        }
+        if edge.is_static {
+            // A static frame that is sent again is the same frame; one that moves after all was never fixed.
+            self.num_contradicting += if is_static { 0 } else { edge.parent_from_child.len() };
+            edge.parent_from_child.clear();
+            edge.is_static = is_static;
         }
         self.num_transforms += 1;
         edge.parent_from_child.push(parent_from_child);
@@ -57,8 +68,10 @@ impl Frames {
     /// Brings each frame's transforms into the order of time, of equal times the first.
     pub fn sort(&mut self) {
         for edge in self.edges.values_mut() {
+            let num_sent = edge.parent_from_child.len();
             edge.parent_from_child.sort_by_key(|pose| pose.time_ns);
             edge.parent_from_child.dedup_by_key(|pose| pose.time_ns);
+            self.num_of_same_time += num_sent - edge.parent_from_child.len();
         }
     }
 
@@ -104,11 +117,17 @@ impl Frames {
         ancestors
     }
 
-    /// The flange in the base, at every time at which a frame between them was sent.
+    /// The flange in the base, at every time at which a frame between them was sent; and how many of these times are left
+    /// out because another frame was not sent for too long.
     ///
     /// # Errors
     /// What is wrong with the two frames: `found …, needed …`.
-    pub fn base_from_flange(&self, base: &str, flange: &str) -> Result<Vec<TimedPose>, (String, String)> {
+    pub fn base_from_flange(
+        &self,
+        base: &str,
+        flange: &str,
+        tolerance_ns: i64,
+    ) -> Result<(Vec<TimedPose>, usize), (String, String)> {
         let (above_base, above_flange) = (self.ancestors(base), self.ancestors(flange));
         let common = above_flange.iter().find(|frame| above_base.contains(frame)).ok_or_else(|| {
             let roots = [&above_base, &above_flange].map(|above| above.last().cloned().unwrap_or_default());
@@ -139,37 +158,54 @@ impl Frames {
         times.dedup();
         let mut to_base: Vec<Walker<'_>> = to_base.into_iter().map(Walker::new).collect();
         let mut to_flange: Vec<Walker<'_>> = to_flange.into_iter().map(Walker::new).collect();
-        let pose = |walkers: &mut [Walker<'_>], time_ns: i64| -> TimedPose {
-            let identity = TimedPose { time_ns, ..TimedPose::identity() };
+        let pose = |walkers: &mut [Walker<'_>], time_ns: i64| -> Option<TimedPose> {
+            let mut pose = TimedPose { time_ns, ..TimedPose::identity() };
             // From the frame upwards: each parent stands to the left.
-            walkers.iter_mut().fold(identity, |pose, walker| walker.at(time_ns).then(&pose))
+            for walker in walkers {
+                pose = walker.at(time_ns, tolerance_ns.unsigned_abs())?.then(&pose);
+            }
+            Some(pose)
         };
-        let poses =
-            times.into_iter().map(|time_ns| pose(&mut to_base, time_ns).inverse().then(&pose(&mut to_flange, time_ns)));
-        Ok(poses.collect())
+        let num_times = times.len();
+        let poses: Vec<TimedPose> = times
+            .into_iter()
+            .filter_map(|time_ns| Some(pose(&mut to_base, time_ns)?.inverse().then(&pose(&mut to_flange, time_ns)?)))
+            .collect();
+        let num_in_gaps = num_times - poses.len();
+        Ok((poses, num_in_gaps))
     }
 }
 
 /// Goes along an edge in the order of time.
 struct Walker<'e> {
-    poses: &'e [TimedPose],
+    edge: &'e Edge,
     next: usize,
 }
 
 impl<'e> Walker<'e> {
-    fn new(edge: &'e Edge) -> Self {
-        Self { poses: &edge.parent_from_child, next: 0 }
+    const fn new(edge: &'e Edge) -> Self {
+        Self { edge, next: 0 }
     }
 
-    /// The frame at a time, no earlier than the last that was asked for.
-    fn at(&mut self, time_ns: i64) -> TimedPose {
-        while self.poses.get(self.next).is_some_and(|pose| pose.time_ns < time_ns) {
+    /// The frame at a time, no earlier than the last that was asked for; `None` in a gap.
+    fn at(&mut self, time_ns: i64, tolerance_ns: u64) -> Option<TimedPose> {
+        let poses = &self.edge.parent_from_child;
+        while poses.get(self.next).is_some_and(|pose| pose.time_ns < time_ns) {
             self.next += 1;
         }
-        match (self.next.checked_sub(1).and_then(|before| self.poses.get(before)), self.poses.get(self.next)) {
-            (Some(before), Some(after)) => before.towards(after, time_ns),
-            (Some(only), None) | (None, Some(only)) => TimedPose { time_ns, ..*only },
-            (None, None) => TimedPose { time_ns, ..TimedPose::identity() },
+        let away = |pose: &TimedPose| pose.time_ns.abs_diff(time_ns);
+        match (self.next.checked_sub(1).and_then(|before| poses.get(before)), poses.get(self.next)) {
+            _ if self.edge.is_static => poses.last().map(|pose| TimedPose { time_ns, ..*pose }),
+            (_, Some(now)) if now.time_ns == time_ns => Some(*now),
+            (Some(before), Some(after))
+                if before.time_ns.abs_diff(after.time_ns) <= tolerance_ns.saturating_mul(MAX_GAP) =>
+            {
+                Some(before.towards(after, time_ns))
+            }
+            (before, after) => {
+                let nearest = before.into_iter().chain(after).min_by_key(|pose| away(pose));
+                nearest.filter(|pose| away(pose) <= tolerance_ns).map(|pose| TimedPose { time_ns, ..*pose })
+            }
         }
     }
 }
@@ -210,7 +246,8 @@ mod tests {
         ]);
         assert_eq!(frames.likely_base().as_deref(), Some("base_link"));
         assert_eq!(frames.likely_flange().as_deref(), Some("tool0"));
-        let poses = frames.base_from_flange("base_link", "tool0").expect("connected");
+        let (poses, num_in_gaps) = frames.base_from_flange("base_link", "tool0", 50).expect("connected");
+        assert_eq!(num_in_gaps, 0);
         // The arm goes on to 100, but of tool0 nothing is known after 90.
         assert_eq!(poses.iter().map(|pose| pose.time_ns).collect::<Vec<_>>(), [0, 50, 90]);
         let expected = Vec3::new(1.0 + 3.0 * (half_turn / 2.0).cos(), 3.0 * (half_turn / 2.0).sin(), 0.0);
@@ -218,13 +255,42 @@ mod tests {
     }
 
     #[test]
+    fn a_static_frame_does_not_wipe_one_that_moves_and_what_is_passed_over_is_counted() {
+        let moving = [0, 100, 100].map(|time_ns| ("base", "tool0", false, pose(time_ns, 1.0, 0.0)));
+        let fixed = [("base", "tool0", true, pose(0, 9.0, 0.0))];
+        let other = [("table", "tool0", false, pose(50, 9.0, 0.0))];
+        for order in [[&fixed[..], &moving[..], &other[..]].concat(), [&moving[..], &other[..], &fixed[..]].concat()] {
+            let frames = frames(&order);
+            let (poses, _) = frames.base_from_flange("base", "tool0", 50).expect("connected");
+            assert_eq!(poses.iter().map(|pose| pose.translation.x).collect::<Vec<_>>(), [1.0, 1.0]);
+            assert_eq!((frames.num_contradicting, frames.num_of_same_time), (2, 1));
+        }
+    }
+
+    #[test]
+    fn a_frame_that_was_not_sent_for_long_is_not_made_up() {
+        let arm = [0, 400, 800].map(|time_ns| ("base_link", "arm", false, pose(time_ns, 0.001, 0.0)));
+        // The tool is sent five times, then nothing until 800.
+        let tool = [0, 100, 200, 300, 800].map(|time_ns| ("arm", "tool0", false, pose(time_ns, 1.0, 0.0)));
+        let frames = frames(&[&arm[..], &tool[..]].concat());
+        let at = |tolerance_ns: i64| {
+            let (poses, num_in_gaps) = frames.base_from_flange("base_link", "tool0", tolerance_ns).expect("connected");
+            (poses.iter().map(|pose| pose.time_ns).collect::<Vec<_>>(), num_in_gaps)
+        };
+        // The arm's transforms are 400 apart, and at 400 the tool's last is 100 old.
+        assert_eq!(at(99), (vec![0, 800], 4));
+        assert_eq!(at(100), (vec![0, 100, 200, 300, 400, 800], 0));
+        assert_eq!(at(10), (vec![0, 800], 4));
+    }
+
+    #[test]
     fn frames_that_do_not_hang_together_or_go_in_a_circle_are_named() {
         let apart = frames(&[("a", "b", false, pose(0, 0.0, 0.0)), ("c", "d", false, pose(0, 0.0, 0.0))]);
-        let (found, _) = apart.base_from_flange("b", "d").expect_err("two trees");
+        let (found, _) = apart.base_from_flange("b", "d", 50).expect_err("two trees");
         assert!(found.contains("not connected"), "{found}");
         let circle = frames(&[("a", "b", false, pose(0, 0.0, 0.0)), ("b", "a", false, pose(0, 0.0, 0.0))]);
-        assert!(circle.base_from_flange("a", "b").is_ok_and(|poses| poses.len() == 1));
+        assert!(circle.base_from_flange("a", "b", 50).is_ok_and(|(poses, _)| poses.len() == 1));
         let rigid = frames(&[("a", "b", true, pose(0, 0.0, 0.0))]);
-        assert!(rigid.base_from_flange("a", "b").expect_err("rigid").1.contains("moves"));
+        assert!(rigid.base_from_flange("a", "b", 50).expect_err("rigid").1.contains("moves"));
     }
 }

@@ -81,26 +81,26 @@ impl FromStr for ProfileAxes {
 /// Points that lie so near to a plane, as a part of how far they spread, lie in it.
 const FLAT: f64 = 1e-6;
 
-/// The axes of a reading by the plane that its points lie in; `None` where too few points tell.
-///
-/// # Errors
-/// Points that lie in no plane of two axes.
-pub(super) fn detect(points: &Points) -> Result<Option<ProfileAxes>, BadMessage> {
+/// How far a reading's points spread along x, y and z; `None` where they are too few, or all the same.
+pub(super) fn spreads(points: &Points) -> Option<[f64; 3]> {
+    const MIN_POINTS: usize = 3;
     let valid = || points.points.iter().filter(|point| point.iter().all(|value| value.is_finite()));
-    if valid().count() < 3 {
-        return Ok(None);
-    }
     let spreads = [0, 1, 2].map(|axis| {
         let (min, max) = valid()
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), point| (min.min(point[axis]), max.max(point[axis])));
         max - min
     });
+    (valid().count() >= MIN_POINTS && spreads.iter().any(|spread| *spread > 0.0)).then_some(spreads)
+}
+
+/// The axes of a reading by the plane that its points lie in.
+///
+/// # Errors
+/// Points that lie in no plane of two axes.
+pub(super) fn detect(spreads: [f64; 3]) -> Result<ProfileAxes, BadMessage> {
     let (flat, spread) =
         (0..3).map(|axis| (axis, spreads[axis])).min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((2, 0.0));
     let widest = spreads.iter().copied().fold(0.0, f64::max);
-    if widest <= 0.0 {
-        return Ok(None);
-    }
     if spread > widest * FLAT {
         let found = format!("points that spread over {spreads:.4?} along x, y and z");
         return Err(BadMessage::Value {
@@ -108,7 +108,7 @@ pub(super) fn detect(points: &Points) -> Result<Option<ProfileAxes>, BadMessage>
             needed: "one line in the plane of two axes; or name them with the axes",
         });
     }
-    Ok(Some(ProfileAxes::across(flat)))
+    Ok(ProfileAxes::across(flat))
 }
 
 /// The largest coordinate, which tells metres from millimetres.
@@ -191,12 +191,13 @@ mod tests {
             for point in &mut line {
                 point[flat] = 0.25;
             }
-            let axes = detect(&points(&line)).expect("flat").expect("enough points");
+            let axes = detect(spreads(&points(&line)).expect("enough points")).expect("flat");
             assert_eq!(axes.to_string(), expected);
             assert_eq!(expected.parse(), Ok(axes));
         }
-        assert!(detect(&points(&[[0.0, 0.0, 0.0], [1.0, 2.0, 3.0], [2.0, 1.0, 0.5]])).is_err());
-        assert_eq!(detect(&points(&[[0.0; 3], [1.0; 3]])), Ok(None));
+        assert!(detect([2.0, 2.0, 3.0]).is_err());
+        assert_eq!(spreads(&points(&[[0.0; 3], [1.0; 3]])), None);
+        assert_eq!(spreads(&points(&[[7.0; 3]; 20])), None);
         assert!("x,x".parse::<ProfileAxes>().is_err() && "x".parse::<ProfileAxes>().is_err());
         assert_eq!("x, -z".parse::<ProfileAxes>().map(|axes| axes.to_string()).as_deref(), Ok("x,-z"));
     }

@@ -4,7 +4,7 @@
 //! that was cut off or damaged gives what stands before; the `mcap` crate, which believes the lengths of texts, unpacks the
 //! chunks.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::fs::File;
 use std::io::{BufReader, Read as _, Seek as _, SeekFrom};
 use std::path::Path;
@@ -275,7 +275,8 @@ fn crc32(bytes: &[u8]) -> u32 {
 #[derive(Default)]
 struct Directory {
     schemas: HashMap<u16, String>,
-    channels: HashMap<u16, (String, String, String)>,
+    /// By number, so that topics come in one order each time: the schema's number, the topic, the encoding.
+    channels: BTreeMap<u16, (u16, String, String)>,
     counts: HashMap<u16, u64>,
 }
 
@@ -284,8 +285,7 @@ impl Directory {
         match record {
             Record::Schema { id, name } => drop(self.schemas.insert(id, name)),
             Record::Channel { id, schema_id, topic, encoding } => {
-                let type_name = self.schemas.get(&schema_id).cloned().unwrap_or_default();
-                self.channels.insert(id, (topic, type_name, encoding));
+                self.channels.insert(id, (schema_id, topic, encoding));
             }
             Record::Message { channel_id, .. } => *self.counts.entry(channel_id).or_default() += 1,
             Record::Counts(counts) => self.counts = counts,
@@ -294,15 +294,14 @@ impl Directory {
     }
 
     fn topics(self) -> Vec<FileTopic> {
-        let mut topics: Vec<FileTopic> = Vec::new();
-        for (id, (name, type_name, encoding)) in self.channels {
-            let num_messages = self.counts.get(&id).copied().unwrap_or_default();
-            match topics.iter_mut().find(|topic| topic.name == name) {
-                Some(topic) => topic.num_messages += num_messages,
-                None => topics.push(FileTopic { name, type_name, encoding, num_messages }),
-            }
-        }
-        topics
+        let Self { schemas, channels, counts } = self;
+        let topic = |(id, (schema_id, name, encoding)): (u16, (u16, String, String))| FileTopic {
+            name,
+            type_name: schemas.get(&schema_id).cloned().unwrap_or_default(),
+            encoding,
+            num_messages: counts.get(&id).copied().unwrap_or_default(),
+        };
+        channels.into_iter().map(topic).collect()
     }
 }
 
@@ -348,7 +347,8 @@ fn summary(path: &Path) -> Result<Option<Directory>, BagError> {
         return Ok(None);
     }
     let outcome = walk.records(&mut |record| {
-        has_counts |= matches!(record, Record::Counts(_));
+        // Writers that do not count leave the counts empty.
+        has_counts |= matches!(&record, Record::Counts(counts) if !counts.is_empty());
         directory.take(record);
         Ok(())
     });
@@ -358,17 +358,19 @@ fn summary(path: &Path) -> Result<Option<Directory>, BagError> {
 /// See [`super::storage::stream`].
 pub(super) fn stream(
     path: &Path,
-    wanted: &dyn Fn(&str) -> Option<usize>,
+    wanted: &dyn Fn(&str, &str) -> Option<usize>,
     take: Take<'_>,
 ) -> Result<Option<String>, ImportError> {
     let mut walk = Walk::open(path)?;
     let num_bytes = walk.left;
     let mut topic_of: HashMap<u16, usize> = HashMap::new();
+    let mut types: HashMap<u16, String> = HashMap::new();
     let outcome = walk.seek(::mcap::MAGIC.len() as u64, num_bytes).map_err(Stop::Damage).and_then(|()| {
         walk.records(&mut |record| {
             match record {
-                Record::Channel { id, topic, .. } => {
-                    if let Some(topic_idx) = wanted(&topic) {
+                Record::Schema { id, name } => drop(types.insert(id, name)),
+                Record::Channel { id, schema_id, topic, .. } => {
+                    if let Some(topic_idx) = wanted(&topic, types.get(&schema_id).map_or("", String::as_str)) {
                         topic_of.insert(id, topic_idx);
                     }
                 }
@@ -377,7 +379,7 @@ pub(super) fn stream(
                         take(RawMessage { topic_idx: *topic_idx, log_time_ns, data }).map_err(Stop::Error)?;
                     }
                 }
-                Record::Schema { .. } | Record::Counts(_) | Record::Other => {}
+                Record::Counts(_) | Record::Other => {}
             }
             Ok(())
         })
@@ -391,7 +393,19 @@ pub(super) fn stream(
 
 #[cfg(test)]
 mod tests {
-    use super::crc32;
+    use super::{Directory, Record, crc32};
+
+    #[test]
+    fn channels_come_by_number_with_their_types() {
+        let mut directory = Directory::default();
+        for id in [9, 3, 5] {
+            let (topic, encoding) = ("/points".to_owned(), "cdr".to_owned());
+            directory.take(Record::Channel { id, schema_id: id, topic, encoding });
+            directory.take(Record::Schema { id, name: format!("type {id}") });
+        }
+        let types: Vec<String> = directory.topics().into_iter().map(|topic| topic.type_name).collect();
+        assert_eq!(types, ["type 3", "type 5", "type 9"]);
+    }
 
     #[test]
     fn the_checksum_is_that_of_zip_files() {

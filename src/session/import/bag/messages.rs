@@ -70,6 +70,13 @@ pub(super) struct Points {
     pub points: Vec<[f64; 3]>,
 }
 
+impl Points {
+    /// Whether any is there.
+    pub fn has_any(&self) -> bool {
+        self.points.iter().any(|point| point.iter().all(|value| value.is_finite()))
+    }
+}
+
 /// Nanoseconds of a header; 0 is no time.
 fn stamp(cdr: &mut Cdr<'_>) -> Result<Option<i64>, BadMessage> {
     let (seconds, nanoseconds) = (cdr.i32()?, cdr.u32()?);
@@ -146,11 +153,16 @@ pub(super) fn laser_scan(message: &[u8]) -> Result<Points, BadMessage> {
         // A scan has thousands of rays, not 2⁵³.
         #[expect(clippy::cast_precision_loss, reason = "see above")]
         let angle = step.mul_add(idx as f64, angle_min);
-        let is_valid = range.is_finite() && range >= range_min && !(range > range_max && range_max > 0.0);
+        // Drivers write 0 where nothing came back, also where they leave the limits at 0.
+        let is_valid =
+            range.is_finite() && range > 0.0 && range >= range_min && !(range > range_max && range_max > 0.0);
         points.push(if is_valid { [range * angle.cos(), range * angle.sin(), 0.0] } else { [f64::NAN; 3] });
     }
     Ok(Points { stamp_ns, points })
 }
+
+/// Points of a cloud; a line has thousands.
+const MAX_POINTS: usize = 16_000_000;
 
 /// Where a coordinate stands in a point of a cloud.
 #[derive(Clone, Copy, Debug)]
@@ -200,6 +212,15 @@ pub(super) fn point_cloud(message: &[u8]) -> Result<Points, BadMessage> {
             data.len()
         )));
     }
+    let mut order: Vec<(usize, usize)> = [x, y, z].iter().map(|field| field.offset).zip(ends).collect();
+    order.sort_unstable();
+    if order.windows(2).any(|pair| pair[0].1 > pair[1].0) {
+        return Err(layout(format!("x, y and z that overlap, at {}, {} and {}", x.offset, y.offset, z.offset)));
+    }
+    let num_points = width.saturating_mul(height);
+    if num_points > MAX_POINTS {
+        return Err(BadMessage::Value { found: format!("{num_points} points"), needed: "no more than 16 million" });
+    }
     let read = |point: &[u8], field: Field| -> f64 {
         let bytes = point.get(field.offset..).unwrap_or_default();
         if field.is_double {
@@ -211,9 +232,13 @@ pub(super) fn point_cloud(message: &[u8]) -> Result<Points, BadMessage> {
         }
     };
     // No more points than there are bytes: every point has at least twelve.
-    let mut points = Vec::with_capacity(width * height);
+    let mut points = Vec::with_capacity(num_points);
     for row in data.chunks_exact(row_step.max(1)).take(height) {
-        points.extend(row.chunks_exact(point_step).take(width).map(|point| [x, y, z].map(|field| read(point, field))));
+        points.extend(row.chunks_exact(point_step).take(width).map(|point| {
+            let point = [x, y, z].map(|field| read(point, field));
+            // Clouds that are to have no NaN have the origin where nothing was seen.
+            if point.iter().all(|value| *value == 0.0) { [f64::NAN; 3] } else { point }
+        }));
     }
     Ok(Points { stamp_ns, points })
 }

@@ -143,6 +143,12 @@ pub struct BagReport {
     pub frames: Option<[String; 2]>,
     /// Poses that were read.
     pub num_poses: usize,
+    /// Poses at the time of another, left out.
+    pub num_of_same_time: usize,
+    /// Transforms that hang a frame below another parent than before, or fix one that moves, left out.
+    pub num_contradicting: usize,
+    /// Times of poses at which a frame of the chain was not sent for too long, left out.
+    pub num_in_gaps: usize,
     /// Where the profiles came from.
     pub profile_topic: Option<String>,
     /// Profiles that were read.
@@ -198,11 +204,14 @@ impl Bag {
             // Why a file ends early is said when it is read.
             let (topics, _) = storage::topics(path, storage)?;
             for storage::FileTopic { name, type_name, encoding, num_messages } in topics {
-                if let Some(topic) = bag.topics.iter_mut().find(|topic| topic.name == name) {
-                    topic.num_messages += num_messages;
-                } else {
-                    let kind = MessageKind::of_type(&type_name).filter(|_| encoding == "cdr");
-                    bag.topics.push(Topic { name, type_name, kind, num_messages });
+                let kind = MessageKind::of_type(&type_name).filter(|_| encoding == "cdr");
+                let topic = Topic { name, type_name, kind, num_messages };
+                match bag.topics.iter_mut().find(|known| known.name == topic.name) {
+                    Some(known) if known.type_name == topic.type_name => known.num_messages += num_messages,
+                    // Of two types under one name the one that we can read.
+                    Some(known) if known.kind.is_none() && topic.kind.is_some() => *known = topic,
+                    Some(_) => {}
+                    None => bag.topics.push(topic),
                 }
             }
             bag.files.push((path.clone(), storage));

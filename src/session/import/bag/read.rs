@@ -15,7 +15,7 @@ use super::cdr::BadMessage;
 use super::frames::Frames;
 use super::line;
 use super::messages::{self, MessageKind, Points, TimedPose};
-use super::settle::{Stillness, mean, pose_at, still};
+use super::settle::{Standing, Stillness, pose_at, still};
 use super::storage::{self, RawMessage};
 use super::{Bag, BagError, BagOptions, BagReport, Clock, ProfileAxes, Taking, Topic, Unreadable};
 
@@ -58,12 +58,12 @@ pub(in crate::session::import) fn read(
     };
     let stays: Vec<Stay> = match options.bag.taking {
         Some(Taking::EveryProfile) => Vec::new(),
-        _ => still(&poses, &stillness)
+        _ => still(&poses, &stillness, &mut || reader.progress.tick())?
             .into_iter()
-            .map(|range| Stay {
+            .map(|Standing { range, pose }| Stay {
                 from_ns: poses[range.start].time_ns,
                 to_ns: poses[range.end - 1].time_ns,
-                pose: mean(&poses[range]),
+                pose,
                 readings: Vec::new(),
             })
             .collect(),
@@ -278,7 +278,9 @@ impl Reader<'_, '_> {
         take: &mut dyn FnMut(&mut BagReport, RawMessage<'_>) -> Result<(), BadMessage>,
     ) -> Result<(), ImportError> {
         for (path, storage) in &self.bag.files {
-            let wanted = |name: &str| topics.iter().position(|topic| topic.name == name);
+            let wanted = |name: &str, type_name: &str| {
+                topics.iter().position(|topic| topic.name == name && topic.type_name == type_name)
+            };
             let (report, num_messages, progress) = (&mut self.report, &mut self.num_messages, &mut *self.progress);
             let damage = storage::stream(path, *storage, &wanted, &mut |message| {
                 *num_messages += 1;
@@ -336,14 +338,19 @@ impl Reader<'_, '_> {
                 Ok(())
             })?;
             poses.sort_by_key(|pose| pose.time_ns);
+            let num_sent = poses.len();
             poses.dedup_by_key(|pose| pose.time_ns);
+            self.report.num_of_same_time = num_sent - poses.len();
         } else {
-            poses = self.poses_of_frames(options, has_header)?;
+            poses = self.poses_of_frames(&topic, options, has_header)?;
         }
         self.report.num_poses = poses.len();
         if poses.is_empty() {
             let found = match self.report.unreadable.first() {
                 Some(unreadable) => format!("no readable pose on {} ({})", topic.name, unreadable.first),
+                None if self.report.num_in_gaps > 0 => {
+                    format!("no time on {} around which every frame of the chain was sent", topic.name)
+                }
                 None => format!("no pose on {}", topic.name),
             };
             return Err(self.error(found, "poses of the robot", "choose another topic, or record again"));
@@ -351,10 +358,14 @@ impl Reader<'_, '_> {
         Ok(poses)
     }
 
-    fn poses_of_frames(&mut self, options: &mut BagOptions, has_header: bool) -> Result<Vec<TimedPose>, ImportError> {
+    fn poses_of_frames(
+        &mut self,
+        topic: &Topic,
+        options: &mut BagOptions,
+        has_header: bool,
+    ) -> Result<Vec<TimedPose>, ImportError> {
         let bag = self.bag;
-        let topics: Vec<&Topic> =
-            bag.topics.iter().filter(|topic| topic.kind == Some(MessageKind::Transforms)).collect();
+        let topics = frames_with(&bag.topics, &topic.name);
         let mut frames = Frames::default();
         self.each(&topics, true, &mut |report, message| {
             let is_static = topics.get(message.topic_idx).is_some_and(|topic| is_static(&topic.name));
@@ -364,6 +375,8 @@ impl Reader<'_, '_> {
             Ok(())
         })?;
         frames.sort();
+        (self.report.num_contradicting, self.report.num_of_same_time) =
+            (frames.num_contradicting, frames.num_of_same_time);
         let base = options.base_frame.clone().or_else(|| frames.likely_base());
         let flange = options.flange_frame.clone().or_else(|| frames.likely_flange());
         let (Some(base), Some(flange)) = (base, flange) else {
@@ -374,8 +387,10 @@ impl Reader<'_, '_> {
         if let Some(unknown) = [&base, &flange].into_iter().find(|frame| !frames.names().contains(frame)) {
             return Err(self.error(format!("no frame {unknown}"), "a frame of the bag", &remedy()));
         }
-        let poses =
-            frames.base_from_flange(&base, &flange).map_err(|(found, needed)| self.error(found, &needed, &remedy()))?;
+        let (poses, num_in_gaps) = frames
+            .base_from_flange(&base, &flange, ns(options.pair_within_ms))
+            .map_err(|(found, needed)| self.error(found, &needed, &remedy()))?;
+        self.report.num_in_gaps = num_in_gaps;
         self.report.frames = Some([base.clone(), flange.clone()]);
         (options.base_frame, options.flange_frame) = (Some(base), Some(flange));
         Ok(poses)
@@ -400,25 +415,39 @@ impl Reader<'_, '_> {
                 Some(MessageKind::LaserScan) => messages::laser_scan(message.data)?,
                 _ => messages::point_cloud(message.data)?,
             };
-            if axes.is_none() {
-                axes = line::detect(&points)?;
-            }
-            if unit.is_none() && points.points.iter().flatten().any(|value| value.is_finite()) {
+            let spreads = line::spreads(&points);
+            if let Some(spreads) = spreads {
+                if axes.is_none() {
+                    axes = Some(line::detect(spreads)?);
+                }
                 let is_metres = topic.kind == Some(MessageKind::LaserScan) || line::largest(&points) <= MAX_METRES;
-                unit = Some(if is_metres { LengthUnit::Metres } else { LengthUnit::Millimetres });
+                unit.get_or_insert(if is_metres { LengthUnit::Metres } else { LengthUnit::Millimetres });
             }
             let time_ns = points.stamp_ns.filter(|_| clock == Clock::Header).unwrap_or(message.log_time_ns);
             report.num_profiles += 1;
             captures.take(time_ns, poses, tolerance_ns, report, || {
-                // What the axes are cannot be told before a line was seen; a reading without points needs none.
-                let axes = axes.unwrap_or(ProfileAxes::across(2));
-                line::profile(&points, axes, unit.unwrap_or(LengthUnit::Metres).in_mm(), z_sign)
+                match (axes, unit) {
+                    (Some(axes), Some(unit)) => line::profile(&points, axes, unit.in_mm(), z_sign),
+                    // What the axes and the unit are cannot be told before a line was seen.
+                    _ if points.has_any() => Err(BadMessage::Value {
+                        found: "too few points to tell the axes and the unit".to_owned(),
+                        needed: "a line in an earlier reading; or name the axes and the unit",
+                    }),
+                    _ => Ok(Profile::default()),
+                }
             })
         })?;
         options.bag.axes = axes;
         options.profile_length_unit = unit;
         Ok(())
     }
+}
+
+/// The topic that was chosen, and those with the frames that never change of the same robot, or of all robots.
+fn frames_with<'t>(topics: &'t [Topic], chosen: &str) -> Vec<&'t Topic> {
+    let namespace = chosen.rsplit_once('/').map_or("", |(namespace, _)| namespace);
+    let belongs = |name: &str| name == chosen || name == "/tf_static" || name == format!("{namespace}/tf_static");
+    topics.iter().filter(|topic| topic.kind == Some(MessageKind::Transforms) && belongs(&topic.name)).collect()
 }
 
 /// Where frames are sent that never change.
@@ -432,4 +461,25 @@ fn listed(frames: &Frames) -> String {
     let names = frames.names();
     let more = if names.len() > MAX_NAMED { ", …" } else { "" };
     format!("{}{more}", names[..names.len().min(MAX_NAMED)].join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_of_another_robot_are_not_mixed_in() {
+        let names = ["/r1/tf", "/r1/tf_static", "/r2/tf", "/r2/tf_static", "/tf", "/tf_static"];
+        let topics = names.map(|name| Topic {
+            name: name.to_owned(),
+            type_name: "tf2_msgs/msg/TFMessage".to_owned(),
+            kind: Some(MessageKind::Transforms),
+            num_messages: 1,
+        });
+        let with = |chosen: &str| -> Vec<&str> {
+            frames_with(&topics, chosen).into_iter().map(|topic| topic.name.as_str()).collect()
+        };
+        assert_eq!(with("/r1/tf"), ["/r1/tf", "/r1/tf_static", "/tf_static"]);
+        assert_eq!(with("/tf"), ["/tf", "/tf_static"]);
+    }
 }

@@ -59,32 +59,80 @@ pub(super) struct Stillness {
     pub within_rad: f64,
 }
 
-/// The stretches of poses, ascending in time, in which the robot stood still.
-pub(super) fn still(poses: &[TimedPose], stillness: &Stillness) -> Vec<Range<usize>> {
+/// A stay of the robot.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Standing {
+    /// Which poses are within it.
+    pub range: Range<usize>,
+    /// Where it stood.
+    pub pose: TimedPose,
+}
+
+/// The stays in poses ascending in time. `tick` is called every now and then and can end it.
+pub(super) fn still<E>(
+    poses: &[TimedPose],
+    stillness: &Stillness,
+    tick: &mut dyn FnMut() -> Result<(), E>,
+) -> Result<Vec<Standing>, E> {
+    /// A stay is found to a part of the least time that one takes: what densely sent poses cost is bounded by it.
+    const PARTS: i64 = 256;
+    /// Poses that are looked at until the next tick.
+    const TICK_EVERY: usize = 1 << 20;
     let Stillness { for_ns, within, within_rad } = *stillness;
-    let mut stretches: Vec<Range<usize>> = Vec::new();
-    let mut start = 0;
+    let mut found: Vec<Standing> = Vec::new();
+    let (mut start, mut looked_at) = (0, 0);
     while let Some(first) = poses.get(start) {
+        let left_ns = poses[poses.len() - 1].time_ns.saturating_sub(first.time_ns);
+        if left_ns < for_ns {
+            break;
+        }
         let moved = poses[start..].iter().position(|pose| !pose.is_near(first, within, within_rad));
         let end = moved.map_or(poses.len(), |moved| start + moved);
+        looked_at += end - start;
+        if looked_at >= TICK_EVERY {
+            tick()?;
+            looked_at = 0;
+        }
         let lasted = poses[end - 1].time_ns.saturating_sub(first.time_ns);
         if lasted < for_ns || end - start < 2 {
+            let next_ns = first.time_ns.saturating_add(for_ns / PARTS);
             start += 1;
+            while start < end && poses[start].time_ns < next_ns {
+                start += 1;
+            }
             continue;
         }
-        // Noise, or the end of a slow approach, can part one stay in two.
-        match stretches.last_mut() {
-            Some(last)
-                if last.end == start
-                    && mean(&poses[last.clone()]).is_near(&mean(&poses[start..end]), within, within_rad) =>
-            {
-                last.end = end;
+        let part = Standing { range: start..end, pose: mean(&poses[start..end]) };
+        match found.last_mut() {
+            Some(stay) if is_one_stay(poses, stay, &part, stillness) => {
+                // The longer one tells better where it is.
+                if part.range.len() > stay.range.len() {
+                    stay.pose = part.pose;
+                }
+                stay.range.end = end;
             }
-            _ => stretches.push(start..end),
+            _ => found.push(part),
         }
         start = end;
     }
-    stretches
+    for stay in &mut found {
+        // Poses of a stay are within the limit of its first, which is so of the mean; what is beyond is a glitch.
+        let near = |pose: &&TimedPose| pose.is_near(&stay.pose, 2.0 * within, 2.0 * within_rad);
+        let near: Vec<TimedPose> = poses[stay.range.clone()].iter().filter(near).copied().collect();
+        stay.pose = mean(&near);
+    }
+    Ok(found)
+}
+
+/// Whether the robot stood at one place and was away but for a moment: noise, a single wrong pose, or the end of a slow
+/// approach part one stay in two.
+fn is_one_stay(poses: &[TimedPose], stay: &Standing, later: &Standing, stillness: &Stillness) -> bool {
+    /// Poses between, of a robot that sends few.
+    const MAX_POSES: usize = 2;
+    let away = stay.range.end..later.range.start;
+    let away_ns = poses[away.end].time_ns.saturating_sub(poses[away.start - 1].time_ns);
+    (away_ns < stillness.for_ns || away.len() <= MAX_POSES)
+        && stay.pose.is_near(&later.pose, stillness.within, stillness.within_rad)
 }
 
 /// The pose that several were readings of: medians of the position, the mean of the rotations.
@@ -142,13 +190,19 @@ mod tests {
 
     const STILL: Stillness = Stillness { for_ns: 500 * MS, within: 0.05, within_rad: 0.001 };
 
+    fn ranges(poses: &[TimedPose]) -> Vec<Range<usize>> {
+        let mut tick = || Ok::<_, std::convert::Infallible>(());
+        let found = still(poses, &STILL, &mut tick).unwrap_or_default();
+        found.into_iter().map(|stay| stay.range).collect()
+    }
+
     #[test]
     fn stays_are_found_between_moves_and_their_noise_is_averaged() {
         // 1 s at 0 mm, 1 s on the way, 1 s at 10 mm, 100 Hz; ±10 µm of noise.
         let x_mm = |idx: i32| f64::from((idx - 100).clamp(0, 100)) * 0.1;
         let poses: Vec<TimedPose> =
             (0..300).map(|idx| pose(idx * 10, x_mm(idx) + if idx % 2 == 0 { 0.01 } else { -0.01 }, 0.0)).collect();
-        let stretches = still(&poses, &STILL);
+        let stretches = ranges(&poses);
         assert_eq!(stretches.len(), 2, "{stretches:?}");
         for (stretch, expected) in stretches.iter().zip([0.0, 10.0]) {
             let found = mean(&poses[stretch.clone()]).translation.x;
@@ -160,20 +214,56 @@ mod tests {
     #[test]
     fn a_turn_on_the_spot_and_a_single_pose_are_no_stay() {
         let turning: Vec<TimedPose> = (0..300).map(|idx| pose(idx * 10, 0.0, f64::from(idx) * 0.01)).collect();
-        assert_eq!(still(&turning, &STILL), []);
-        assert_eq!(still(&[pose(0, 0.0, 0.0)], &STILL), []);
-        assert_eq!(still(&[], &STILL), []);
+        assert_eq!(ranges(&turning), []);
+        assert_eq!(ranges(&[pose(0, 0.0, 0.0)]), []);
+        assert_eq!(ranges(&[]), []);
     }
 
     #[test]
     fn a_slow_creep_is_parted_but_a_stay_with_an_approach_is_one() {
         // 1 mm/s: 0.05 mm in 50 ms, never still for 500 ms.
         let creep: Vec<TimedPose> = (0..300).map(|idx| pose(idx * 10, f64::from(idx) * 0.01, 0.0)).collect();
-        assert_eq!(still(&creep, &STILL), []);
+        assert_eq!(ranges(&creep), []);
         // The last 40 µm of an approach, then 2 s of standing.
         let approach: Vec<TimedPose> =
             (0..260).map(|idx| pose(idx * 10, 0.04 * (1.0 - (f64::from(idx) / 60.0).min(1.0)), 0.0)).collect();
-        assert_eq!(still(&approach, &STILL), vec![0..260; 1]);
+        assert_eq!(ranges(&approach), vec![0..260; 1]);
+    }
+
+    #[test]
+    fn glitches_do_not_part_a_stay() {
+        // 20 minutes at one place; every 12 s one pose is 5 mm and 0.1 rad away.
+        let glitch = |idx: i32| if idx % 600 == 599 { 1.0 } else { 0.0 };
+        let poses: Vec<TimedPose> =
+            (0..60_000).map(|idx| pose(idx * 20, 5.0 * glitch(idx), 0.1 * glitch(idx))).collect();
+        let found = still(&poses, &STILL, &mut || Ok::<_, ()>(())).expect("not ended");
+        let [stay] = found.as_slice() else { panic!("one stay, not {}", found.len()) };
+        assert_eq!(stay.range, 0..59_999);
+        assert!(stay.pose.translation.norm() < 1e-12 && stay.pose.rotation.angle() < 1e-12, "{:?}", stay.pose);
+        // A robot that goes away for 2 s and comes back was there twice.
+        let away: Vec<TimedPose> =
+            (0..300).map(|idx| pose(idx * 20, if (100..200).contains(&idx) { 5.0 } else { 0.0 }, 0.0)).collect();
+        assert_eq!(ranges(&away), [0..100, 100..200, 200..300]);
+    }
+
+    #[test]
+    fn dense_poses_are_looked_through_in_a_time_that_grows_with_their_number() {
+        // Half a million poses in 0.4 s, a move, and again: nowhere long enough.
+        let half_second: Vec<TimedPose> = (0..1_000_000)
+            .map(|idx| {
+                let (part, time_ns) = (idx / 500_000, i64::from(idx) * 800);
+                TimedPose { time_ns, ..pose(0, f64::from(part), 0.0) }
+            })
+            .collect();
+        let mut num_ticks = 0;
+        let tick = &mut || {
+            num_ticks += 1;
+            // Each of the poses is looked at no more than 256 times.
+            if num_ticks > 256 { Err("too often") } else { Ok(()) }
+        };
+        assert_eq!(still(&half_second, &STILL, tick), Ok(Vec::new()));
+        assert!(num_ticks > 0);
+        assert!(still(&half_second, &STILL, &mut || Err("cancelled")).is_err());
     }
 
     #[test]

@@ -43,17 +43,17 @@ pub(super) fn topics(path: &Path) -> Result<Vec<FileTopic>, BagError> {
 /// See [`super::storage::stream`].
 pub(super) fn stream(
     path: &Path,
-    wanted: &dyn Fn(&str) -> Option<usize>,
+    wanted: &dyn Fn(&str, &str) -> Option<usize>,
     take: Take<'_>,
 ) -> Result<Option<String>, ImportError> {
     let connection = open(path)?;
     let mut refused = None;
     let mut read = || -> rusqlite::Result<()> {
         let mut topic_of: HashMap<i64, usize> = HashMap::new();
-        let mut query = connection.prepare("SELECT id, name FROM topics")?;
+        let mut query = connection.prepare("SELECT id, name, type FROM topics")?;
         let mut rows = query.query([])?;
         while let Some(row) = rows.next()? {
-            if let Some(topic_idx) = wanted(&row.get::<_, String>(1)?) {
+            if let Some(topic_idx) = wanted(&row.get::<_, String>(1)?, &row.get::<_, String>(2)?) {
                 topic_of.insert(row.get(0)?, topic_idx);
             }
         }

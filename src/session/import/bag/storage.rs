@@ -84,12 +84,12 @@ pub(super) fn topics(path: &Path, storage: Storage) -> Result<(Vec<FileTopic>, O
     }
 }
 
-/// Hands over the messages of the topics that `wanted` has a number for, in the order of the file; answers why it ended
+/// Hands over the messages of the topics that `wanted` has a number for, by their name and type, in the order of the file; answers why it ended
 /// before the file's end.
 pub(super) fn stream(
     path: &Path,
     storage: Storage,
-    wanted: &dyn Fn(&str) -> Option<usize>,
+    wanted: &dyn Fn(&str, &str) -> Option<usize>,
     take: Take<'_>,
 ) -> Result<Option<String>, ImportError> {
     match storage {
