@@ -82,7 +82,7 @@ pub fn read_compared(path: &Path, watch: &mut dyn Watch) -> Result<Compared, Not
             let compared = Compared {
                 name: read.name,
                 days,
-                mount: read.mount,
+                mount: read.mount.unwrap_or(Mount::OnFlange),
                 stated: Stated { flange_from_sensor: read.flange_from_sensor, covariance },
                 is_nearest: !read.check.is_rotation(),
                 reference_point_in_sensor_mm,
