@@ -133,7 +133,7 @@ mod tests {
         let exact = in_order(&times, &values, &[whole]).p_value;
         let normal = 2.0 * stats::normal_cdf(-(780.0 - 600.0 - 1.0) / variance_of(40).sqrt());
         assert!((exact / normal - 1.0).abs() < 0.03, "{exact} and {normal}");
-        // Forty-one are no longer counted, and one more pair in order is less likely still.
+        // Forty-one are no longer counted, and forty more pairs in order are less likely.
         let times: Vec<f64> = (0..41).map(f64::from).collect();
         let mut values = times.clone();
         values[..25].reverse();
