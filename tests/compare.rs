@@ -126,6 +126,38 @@ fn a_matrix_states_no_uncertainty_and_one_that_is_no_rotation_is_named() {
     let fixed = write(folder.path(), "fixed.json", &fixed.to_string());
     let (status, _, error) = run(&["compare", &a, &fixed]);
     assert!(status == 2 && error.contains("mounted alike"), "{error}");
+    // Nor is it judged on the data of a sensor on the flange.
+    let out = folder.path().join("report").to_string_lossy().into_owned();
+    for command in [
+        &["verify", "sample_sessions/plate.json"][..],
+        &["report", "sample_sessions/plate.json", "--out", &out],
+        &["scan", "sample_sessions/workpiece.json"],
+    ] {
+        let (status, said, error) = run(&[command, &["--calibration", &fixed]].concat());
+        let is_told = error.contains("fixed.json") && error.contains("beside the robot") && error.lines().count() == 1;
+        assert!(status == 2 && is_told && said.is_empty(), "{command:?}: {status} {error}");
+    }
+    assert!(!Path::new(&out).exists());
+}
+
+#[test]
+fn the_answer_of_a_further_target_is_compared_and_stands_in_the_report_s_result_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let sample = |name: &str| -> Value {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("sample_sessions").join(name);
+        serde_json::from_str(&fs::read_to_string(path).expect("a sample")).expect("JSON")
+    };
+    // Scanned parts, of which no calibration is computed, and a plate.
+    let mut session = sample("workpiece.json");
+    session["further"] = json!([sample("three-targets.json")["further"][0]]);
+    let session = &write(folder.path(), "session.json", &session.to_string());
+    let (status, _, error) =
+        run(&["report", session, "--out", &folder.path().to_string_lossy(), "--section", "verdict"]);
+    assert_eq!(status, 0, "{error}");
+    let in_report = folder.path().join("result.json").to_string_lossy().into_owned();
+    let found = json_of(&["compare", session, &in_report, "--json"]);
+    assert!(vector(&found["difference"]["translation_mm"]).norm() < 1e-9, "{found}");
+    assert!(found["difference"]["angle_deg"].as_f64().expect("an angle") < 1e-6, "{found}");
 }
 
 #[test]
@@ -187,7 +219,8 @@ fn a_folder_over_months_shows_its_drift_and_its_jump() {
     let (status, said, _) = run(&["history", &path]);
     assert!(status == 0 && said.contains("jump: cell_2026-03-01.json") && said.contains("drifts"), "{said}");
     assert!(said.contains("left out:") && said.contains("broken.json"), "{said}");
-    let (status, table, _) = run(&["history", &path, "--csv"]);
+    let (status, table, error) = run(&["history", &path, "--csv"]);
+    assert!(error.contains("broken.json") && error.lines().count() == 1, "{error}");
     assert!(status == 0 && table.lines().count() == 15 && table.lines().all(|line| line.matches(',').count() == 11));
 }
 

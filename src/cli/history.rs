@@ -1,5 +1,6 @@
 //! `handeye history`: the calibrations of a folder over time.
 
+use std::io::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -31,6 +32,12 @@ pub struct HistoryArgs {
 pub fn run(args: &HistoryArgs) -> ExitCode {
     match read_history(&args.folder, &mut Unwatched) {
         Ok(history) => {
+            if args.csv {
+                // A table has no place for them; with nowhere to tell them, the table must do.
+                for reason in &history.left_out {
+                    write!(std::io::stderr(), "{}", words::left_out_line(reason)).ok();
+                }
+            }
             let text = match (args.json, args.csv) {
                 (true, _) => format!("{:#}\n", history_file(&history)),
                 (_, true) => history_csv(&history),

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 
-use crate::report::calibration_file::read_calibration;
+use crate::report::calibration_file::read_calibration_for;
 use crate::report::document::{InputFile, Options, SectionId, document};
 use crate::report::evidence::Evidence;
 use crate::report::files::{HTML, report_files, write_files};
@@ -79,7 +79,7 @@ fn reported(args: &ReportArgs) -> Result<(String, Option<String>), Refusal> {
     let mut inputs = vec![InputFile::new(name_of(&args.file), &bytes)];
     let mut given = Vec::new();
     for path in &args.calibrations {
-        let read = read_calibration(path).map_err(|error| wrong(&error))?;
+        let read = read_calibration_for(path, session.mount).map_err(|error| wrong(&error))?;
         let bytes =
             std::fs::read(path).map_err(|error| wrong(&words::unreadable(&path.display().to_string(), &error)))?;
         inputs.push(InputFile::new(name_of(path), &bytes));

@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use crate::geometry::{Flange, Sensor, Transform, Vec3};
 use crate::report::best_solution;
-use crate::report::calibration_file::{NamedCalibration, read_calibration};
+use crate::report::calibration_file::{NamedCalibration, read_calibration_for};
 use crate::report::scan_file::scan_file;
 use crate::scan::files::{CloudFormat, read_cloud, write_cloud};
 use crate::scan::{Cloud, PointSet, Region, RoundKind, SegmentOptions, Wanted, plane_regions, region_name, shapes};
@@ -142,7 +142,7 @@ fn from_session(args: &ScanArgs) -> Result<(String, Vec<Case>), Refusal> {
     }
     let calibration = match &args.calibration {
         Some(path) => {
-            let read = read_calibration(path).map_err(|error| wrong(error.to_string()))?;
+            let read = read_calibration_for(path, session.mount).map_err(|error| wrong(error.to_string()))?;
             // What was no rotation is told, once, before everything that was measured through the nearest.
             notes.push_str(&if read.check.is_rotation() {
                 String::new()

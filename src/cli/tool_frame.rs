@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use crate::calibrate::Verdict;
 use crate::calibrate::verdict::judge;
+use crate::calibrate::{Mount, Verdict};
 use crate::report::best_solution;
 use crate::report::calibration_file::read_calibration;
 use crate::report::tool_frame::{Format, Name, Parent, ToolFrame, formats};
@@ -70,7 +70,7 @@ fn frame_of(file: &Path, args: &ToolFrameArgs) -> Result<ToolFrame, Refusal> {
         // A file says how sure it is in ways of its own, a matrix not at all: the heading leaves that out.
         return Ok(ToolFrame {
             flange_from_sensor: calibration.flange_from_sensor,
-            parent: Parent::of(calibration.mount),
+            parent: Parent::of(calibration.mount.unwrap_or(Mount::OnFlange)),
             name,
             number: args.number,
             std_mm_deg: None,

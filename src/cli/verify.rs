@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use crate::calibrate::MethodResult;
-use crate::report::calibration_file::read_calibration;
+use crate::report::calibration_file::read_calibration_for;
 use crate::report::digits::{fixed, signed};
 use crate::report::verification::{adding_targets_of, verification};
 use crate::report::verification_file::{Checked, verification_file};
@@ -47,7 +47,7 @@ type Refusal = (u8, String);
 
 fn verified(args: &VerifyArgs) -> Result<String, Refusal> {
     let session = with_further(args)?;
-    let (given, checked) = given(args)?;
+    let (given, checked) = given(args, &session)?;
     let nothing = |reason: String| (EXIT_NOTHING_COMPUTED, reason);
     let measured = measure(&session, None, &mut Unwatched).map_err(|cancelled| nothing(cancelled.to_string()))?;
     let own = match session::problem(&session, &measured) {
@@ -97,10 +97,10 @@ fn with_further(args: &VerifyArgs) -> Result<Session, Refusal> {
 }
 
 /// The calibrations given, each with its check; of one that is no rotation the nearest is judged.
-fn given(args: &VerifyArgs) -> Result<(Vec<Calibration>, Vec<Checked>), Refusal> {
+fn given(args: &VerifyArgs, session: &Session) -> Result<(Vec<Calibration>, Vec<Checked>), Refusal> {
     let (mut calibrations, mut checked) = (Vec::new(), Vec::new());
     for path in &args.calibrations {
-        let read = read_calibration(path).map_err(|error| (EXIT_WRONG_INPUT, error.to_string()))?;
+        let read = read_calibration_for(path, session.mount).map_err(|error| (EXIT_WRONG_INPUT, error.to_string()))?;
         let origin = Origin::Given { name: read.name.clone(), is_nearest: !read.check.is_rotation() };
         let flange_from_sensor = read.flange_from_sensor;
         calibrations.push(Calibration { origin, flange_from_sensor, workspace_point_std_mm: None });

@@ -57,6 +57,19 @@ pub enum CalibrationFileError {
         /// Why.
         refusal: MatrixRefusal,
     },
+    /// That of a sensor which is mounted otherwise.
+    #[error(
+        "{}: found the calibration of a sensor {found}, expected that of one {needed}, as in the session; give one of the same sensor",
+        file.display()
+    )]
+    OtherMount {
+        /// The file.
+        file: PathBuf,
+        /// Where the file's sensor is.
+        found: &'static str,
+        /// Where the session's is.
+        needed: &'static str,
+    },
     /// A matrix that has lost a dimension.
     #[error(
         "{}: found a matrix to which no rotation is nearest (its determinant is {determinant:.3}), expected perpendicular columns of \
@@ -93,8 +106,8 @@ impl NamedCalibration {
 pub struct ReadCalibration {
     /// The file's name, and the method in it.
     pub name: String,
-    /// Where the sensor is mounted, as far as the file says: a matrix says nothing, and is taken for that of a carried one.
-    pub mount: Mount,
+    /// Where the sensor is mounted; a matrix does not say.
+    pub mount: Option<Mount>,
     /// What was found when the matrix was looked at.
     pub check: MatrixCheck,
     /// It, or the nearest to a matrix that is no rotation.
@@ -125,6 +138,25 @@ impl ReadCalibration {
     }
 }
 
+/// Reads a calibration for data of a sensor that is mounted so. A matrix does not say where its sensor is, and is taken at
+/// the session's word.
+///
+/// # Errors
+/// [`CalibrationFileError`], also of a sensor that is mounted otherwise.
+pub fn read_calibration_for(path: &Path, mount: Mount) -> Result<ReadCalibration, CalibrationFileError> {
+    let place = |mount: Mount| match mount {
+        Mount::OnFlange => "on the flange (`flange_from_sensor`)",
+        Mount::Fixed => "beside the robot (`base_from_sensor`)",
+    };
+    let read = read_calibration(path)?;
+    match read.mount.filter(|found| *found != mount) {
+        None => Ok(read),
+        Some(found) => {
+            Err(CalibrationFileError::OtherMount { file: path.to_owned(), found: place(found), needed: place(mount) })
+        }
+    }
+}
+
 /// Reads a calibration. Of a result file the answer is taken, or the first method that has a result; of a verification file the
 /// calibration from all targets, or the first; of a matrix that is no rotation the nearest.
 ///
@@ -142,7 +174,7 @@ pub fn read_calibration(path: &Path) -> Result<ReadCalibration, CalibrationFileE
 /// What stands in a file.
 struct Written {
     name: String,
-    mount: Mount,
+    mount: Option<Mount>,
     matrix: GivenMatrix,
     stated: StatedInFile,
 }
@@ -162,7 +194,7 @@ fn read_matrix(path: &Path) -> Result<Written, CalibrationFileError> {
     }
     let matrix =
         parse_matrix(text).map_err(|refusal| CalibrationFileError::NoMatrix { file: path.to_owned(), refusal })?;
-    Ok(Written { name: file_name, mount: Mount::OnFlange, matrix, stated: StatedInFile::default() })
+    Ok(Written { name: file_name, mount: None, matrix, stated: StatedInFile::default() })
 }
 
 fn from_result(path: &Path, value: &Value) -> Result<Written, CalibrationFileError> {
@@ -208,7 +240,7 @@ fn from_result(path: &Path, value: &Value) -> Result<Written, CalibrationFileErr
         points_in_sensor_mm: points.iter().filter_map(|station| vector_of(&station["target_in_sensor_mm"])).collect(),
         date: value["date"].as_str().map(str::to_owned),
     };
-    Ok(Written { name: entry[name].as_str().unwrap_or("?").to_owned(), mount, matrix, stated })
+    Ok(Written { name: entry[name].as_str().unwrap_or("?").to_owned(), mount: Some(mount), matrix, stated })
 }
 
 fn vector_of(value: &Value) -> Option<Vec3> {

@@ -109,12 +109,15 @@ fn png(figure: &Figure) -> Result<Vec<u8>, FigureError> {
     Ok(bytes)
 }
 
-/// What `solve --json` prints of the session's own target.
+/// What `solve --json` prints of the target whose calibration is the answer, as if it were the session's only one; of the
+/// session's own where there is no answer.
 fn result(evidence: &Evidence) -> String {
-    let own = evidence.targets.first().and_then(|own| own.outcome.as_ref().ok());
-    let results = own.map_or(&[][..], |own| &own.results);
-    let examination = own.map(|own| own.examined.examination());
-    format!("{:#}\n", result_file(&evidence.session, results, examination.as_ref()))
+    let target = evidence.answer().map(|(target, _)| target).or(evidence.targets.first());
+    let solved = target.and_then(|target| target.outcome.as_ref().ok());
+    let session = target.map_or(&evidence.session, |target| &target.session);
+    let results = solved.map_or(&[][..], |solved| &solved.results);
+    let examination = solved.map(|solved| solved.examined.examination());
+    format!("{:#}\n", result_file(session, results, examination.as_ref()))
 }
 
 /// Writes the files into a folder, which is made where it is missing, and a list of them with their checksums. Each is replaced

@@ -6,6 +6,7 @@ use std::ops::Range;
 use crate::geometry::{Vec3, stats};
 
 use super::difference::{Difference, PointShift, Stated, difference, point_shift};
+use super::kendall::in_order;
 
 /// A calibration at a time.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,8 +35,9 @@ pub struct Trend {
     pub std: f64,
     /// The value of the line at the time of the first calibration.
     pub at_first: f64,
-    /// Whether chance alone makes such a slope in less than a hundredth of all cases.
-    pub is_significant: bool,
+    /// Whether it is more than chance: chance alone makes a drift of less than one in a hundred histories. `None` where there
+    /// are too few calibrations to tell.
+    pub is_significant: Option<bool>,
 }
 
 /// What became of a calibration over time.
@@ -56,10 +58,16 @@ pub struct Drift {
 pub const MIN_FOR_TREND: usize = 4;
 /// With fewer steps their own scatter is not known.
 const MIN_STEPS_FOR_SCATTER: usize = 5;
-/// So many σ: of a hundred steps in three directions chance makes one in fifty histories.
+/// Chance makes a jump in fewer histories than this.
+const JUMP_P: f64 = 0.02;
+/// The least number of stated σ that is a jump, as those of few calibrations are not known well.
 const JUMP_STD: f64 = 4.0;
-/// A slope is significant beyond what chance does with this probability.
-const SIGNIFICANT: f64 = 0.99;
+/// Chance makes a drift, along any axis, in fewer histories than this.
+const DRIFT_P: f64 = 0.01;
+/// Three along and three about.
+const AXES: usize = 6;
+/// A slope within so many σ of none is none, in whatever order the values are.
+const LEAST_SLOPE_STD: f64 = 2.0;
 /// The median of slopes scatters by so much more than the best line through normal errors.
 const THEIL_SEN_LOSS: f64 = 1.02;
 
@@ -77,20 +85,22 @@ pub fn drift(epochs: &[Epoch], reference_in_sensor_mm: Vec3) -> Drift {
     let from_previous: Vec<Change> = epochs.windows(2).map(|pair| change(&pair[0], &pair[1])).collect();
     let jumps = jumps(&from_previous);
     let times: Vec<f64> = epochs.iter().map(|epoch| epoch.at).collect();
-    let trends = (0..6)
+    let trends = (0..AXES)
         .map_while(|axis| {
             let values: Vec<f64> = from_first.iter().map(|change| value(&change.difference, axis)).collect();
-            let stds = epochs.iter().map(|epoch| {
-                let covariance = epoch.calibration.covariance?;
-                // About the flange's axes instead of the sensor's: the largest of the three.
-                let variance = match axis {
-                    0..3 => covariance[(axis + 3, axis + 3)],
-                    _ => (0..3).map(|idx| covariance[(idx, idx)]).fold(0.0, f64::max),
-                };
-                Some(variance.max(0.0).sqrt()).filter(|std| std.is_finite())
-            });
-            let stated_std = stats::rms(stds.flatten());
-            trend(&times, &values, &jumps, stated_std)
+            let stds: Vec<Option<f64>> = epochs
+                .iter()
+                .map(|epoch| {
+                    let covariance = epoch.calibration.covariance?;
+                    // About the flange's axes instead of the sensor's: the largest of the three.
+                    let variance = match axis {
+                        0..3 => covariance[(axis + 3, axis + 3)],
+                        _ => (0..3).map(|idx| covariance[(idx, idx)]).fold(0.0, f64::max),
+                    };
+                    Some(variance.sqrt()).filter(|std| std.is_finite() && *std > 0.0)
+                })
+                .collect();
+            trend(&times, &values, &jumps, &stds)
         })
         .collect();
     Drift { from_first, from_previous, jumps, trends }
@@ -110,24 +120,35 @@ fn jumps(steps: &[Change]) -> Vec<usize> {
         (sizes.len() >= MIN_STEPS_FOR_SCATTER).then(|| stats::robust_std_about_zero(&mut sizes))
     };
     let scatters = [0, 1, 2].map(scatter);
+    let (limit_of_stated, limit_of_scatter) = jump_limits(steps.len());
     let stands_out = |step: &Change| {
         (0..3).any(|axis| {
-            let stated = step.shift.std_mm.map(|std| std[axis]);
-            let scale = scatters[axis]
-                .into_iter()
-                .chain(stated)
-                .fold(None, |most: Option<f64>, std| Some(most.map_or(std, |most| most.max(std))));
-            scale.is_some_and(|scale| step.shift.shift_mm[axis].abs() > JUMP_STD * scale.max(LEAST_MM))
+            let by_stated = step.shift.std_mm.map(|std| limit_of_stated * std[axis].max(LEAST_MM));
+            let by_scatter = scatters[axis].map(|scatter| limit_of_scatter * scatter.max(LEAST_MM));
+            let limit = by_stated.into_iter().chain(by_scatter).reduce(f64::max);
+            limit.is_some_and(|limit| step.shift.shift_mm[axis].abs() > limit)
         })
     };
     steps.iter().enumerate().filter(|(_, step)| stands_out(step)).map(|(idx, _)| idx + 1).collect()
+}
+
+/// How many stated σ, and how many of the scatter of so many steps, are a jump: along three axes chance reaches them in fewer
+/// than [`JUMP_P`] of all histories.
+fn jump_limits(num_steps: usize) -> (f64, f64) {
+    // Found by simulation: a scatter from few steps is often too small, and steps that share a calibration make it less sure.
+    const OF_SCATTER: f64 = 1.08;
+    const OF_FEW: f64 = 20.0;
+    #[expect(clippy::cast_precision_loss, reason = "files of a folder")]
+    let count = num_steps.max(1) as f64;
+    let of_normal = stats::normal_quantile(1.0 - JUMP_P / (2.0 * 3.0 * count));
+    (of_normal.max(JUMP_STD), OF_SCATTER * of_normal + OF_FEW / count)
 }
 
 /// The median of the slopes between all pairs with no jump between them: a level that is fitted to each stretch takes nothing
 /// from the slope, where a jump that is subtracted would bring the noise of two calibrations into all that follow.
 ///
 /// `None` with too few values, or at one time.
-fn trend(times: &[f64], values: &[f64], jumps: &[usize], stated_std: f64) -> Option<Trend> {
+fn trend(times: &[f64], values: &[f64], jumps: &[usize], stds: &[Option<f64>]) -> Option<Trend> {
     let mut ends: Vec<usize> = jumps.to_vec();
     ends.push(values.len());
     let mut start = 0;
@@ -171,10 +192,37 @@ fn trend(times: &[f64], values: &[f64], jumps: &[usize], stated_std: f64) -> Opt
     let (count, left_over) = (values.len() as f64, left_over as f64);
     let scatter = stats::robust_std_about_zero(&mut residuals) * (count / left_over).sqrt();
     let lever = squared_lever.sqrt();
-    let std = THEIL_SEN_LOSS * scatter.max(stated_std) / lever;
-    let limit = stats::f_quantile(SIGNIFICANT, 1.0, left_over).sqrt();
-    let is_significant = slope.abs() > limit * std && slope.abs() * lever > f64::EPSILON * 1e3;
-    Some(Trend { slope, std, at_first, is_significant })
+    let std = THEIL_SEN_LOSS * scatter.max(stats::rms(stds.iter().copied().flatten())) / lever;
+    let is_slope = slope.abs() > LEAST_SLOPE_STD * std && slope.abs() * lever > f64::EPSILON * 1e3;
+    #[expect(clippy::cast_precision_loss, reason = "six")]
+    let limit = DRIFT_P / AXES as f64;
+    let order = in_order(times, values, &stretches);
+    let p_value = if order.least_p_value < limit {
+        Some(order.p_value)
+    } else {
+        let stds: Option<Vec<f64>> = stds.iter().copied().collect();
+        stds.map(|stds| slope_p_value(times, values, &stds, &stretches, left_over))
+    };
+    Some(Trend { slope, std, at_first, is_significant: p_value.map(|p_value| is_slope && p_value < limit) })
+}
+
+/// How often chance alone makes such a slope of the best parallel lines, by what the calibrations state, and by their scatter
+/// where that is larger.
+fn slope_p_value(times: &[f64], values: &[f64], stds: &[f64], stretches: &[Range<usize>], left_over: f64) -> f64 {
+    let centred = |of: &[f64]| {
+        let parts = stretches.iter().flat_map(|stretch| {
+            let mean = mean(&of[stretch.clone()]);
+            of[stretch.clone()].iter().map(move |value| value - mean)
+        });
+        parts.collect::<Vec<f64>>()
+    };
+    let (t, y) = (centred(times), centred(values));
+    let squares: f64 = t.iter().map(|t| t * t).sum();
+    let slope = t.iter().zip(&y).map(|(t, y)| t * y).sum::<f64>() / squares;
+    let std = t.iter().zip(stds).map(|(t, std)| (t * std).powi(2)).sum::<f64>().sqrt() / squares;
+    let residuals = t.iter().zip(&y).zip(stds).map(|((t, y), std)| ((y - slope * t) / std).powi(2));
+    let inflation = (residuals.sum::<f64>() / left_over).sqrt().max(1.0);
+    2.0 * stats::normal_cdf(-slope.abs() / (std * inflation))
 }
 
 fn mean(values: &[f64]) -> f64 {
@@ -196,7 +244,11 @@ mod tests {
 
     /// Calibrations a week apart, with noise, a drift along x and a jump along z.
     fn history(count: u32, drift_mm_a_day: f64, jump: Option<(u32, f64)>, is_stated: bool) -> Vec<Epoch> {
-        let mut random = SplitMix::new(11);
+        history_of(11, count, drift_mm_a_day, jump, is_stated)
+    }
+
+    fn history_of(seed: u64, count: u32, drift_mm_a_day: f64, jump: Option<(u32, f64)>, is_stated: bool) -> Vec<Epoch> {
+        let mut random = SplitMix::new(seed);
         // The sum of twelve uniform values is normal enough.
         #[expect(clippy::cast_precision_loss, reason = "below a thousand")]
         let mut noise = |std: f64| std * ((0..12).map(|_| random.below(1000) as f64 / 1000.0).sum::<f64>() - 6.0);
@@ -231,12 +283,17 @@ mod tests {
             let found = drift(&history(16, 0.003, Some((9, 0.3)), is_stated), POINT);
             assert_eq!(found.jumps, [9], "stated {is_stated}");
             let x = found.trends[0];
-            assert!(x.is_significant && (x.slope - 0.003).abs() < 4.0 * x.std, "{x:?}");
+            assert!(x.is_significant == Some(true) && (x.slope - 0.003).abs() < 4.0 * x.std, "{x:?}");
             // What the best two parallel lines through 9 and 7 values would know, within the scatter of a σ from 16.
             let squares = |count: f64| count * (count * count - 1.0) / 12.0;
             let best = STD_MM / (7.0 * (squares(9.0) + squares(7.0)).sqrt());
             assert!(x.std > 0.5 * best && x.std < 2.5 * best, "{} and {best}", x.std);
-            assert!(!found.trends[2].is_significant, "without its jump z does not drift: {:?}", found.trends[2]);
+            assert_eq!(
+                found.trends[2].is_significant,
+                Some(false),
+                "without its jump z does not drift: {:?}",
+                found.trends[2]
+            );
         }
     }
 
@@ -244,7 +301,44 @@ mod tests {
     fn noise_alone_neither_drifts_nor_jumps() {
         let found = drift(&history(30, 0.0, None, true), POINT);
         assert_eq!(found.jumps, [0; 0]);
-        assert!(found.trends.iter().all(|trend| !trend.is_significant), "{:?}", found.trends);
+        assert!(found.trends.iter().all(|trend| trend.is_significant == Some(false)), "{:?}", found.trends);
+    }
+
+    /// How often a thing is found in so many histories, and what is still explained by a promise with the luck of so many.
+    fn share(count: u64, is_found: impl Fn(u64) -> bool) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "thousands")]
+        let share = (0..count).filter(|seed| is_found(*seed)).count() as f64 / count as f64;
+        share
+    }
+
+    #[test]
+    fn of_driftless_histories_no_more_drift_or_jump_than_promised() {
+        const HISTORIES: u64 = 1500;
+        #[expect(clippy::cast_precision_loss, reason = "thousands")]
+        let with_luck = |p: f64| p + 3.0 * (p * (1.0 - p) / HISTORIES as f64).sqrt();
+        for (count, is_stated) in [(5, false), (5, true), (7, false), (8, false), (10, false), (20, false), (20, true)]
+        {
+            let found = |seed: u64| drift(&history_of(seed * 7919, count, 0.0, None, is_stated), POINT);
+            let drifts =
+                share(HISTORIES, |seed| found(seed).trends.iter().any(|trend| trend.is_significant == Some(true)));
+            let jumps = share(HISTORIES, |seed| !found(seed).jumps.is_empty());
+            assert!(drifts <= with_luck(DRIFT_P), "{count}, stated {is_stated}: {drifts} drift");
+            assert!(jumps <= with_luck(JUMP_P), "{count}, stated {is_stated}: {jumps} jump");
+        }
+    }
+
+    #[test]
+    fn a_clear_drift_is_found_and_too_few_calibrations_say_so() {
+        // One σ a step for ten; three σ a step for five of a known σ.
+        for (count, drift_mm_a_day, is_stated) in [(10, 0.0015, false), (20, 0.0007, false), (5, 0.004, true)] {
+            let found = share(200, |seed| {
+                let found = drift(&history_of(seed * 7919, count, drift_mm_a_day, None, is_stated), POINT);
+                found.trends[0].is_significant == Some(true)
+            });
+            assert!(found > 0.9, "{count}: {found}");
+        }
+        let too_few = drift(&history(6, 0.004, None, false), POINT);
+        assert!(too_few.trends.len() == AXES && too_few.trends.iter().all(|trend| trend.is_significant.is_none()));
     }
 
     #[test]
@@ -261,6 +355,6 @@ mod tests {
         let same = vec![history(1, 0.0, None, false)[0].clone(); 8];
         let same: Vec<Epoch> = (0_u32..).zip(same).map(|(at, epoch)| Epoch { at: f64::from(at), ..epoch }).collect();
         let found = drift(&same, POINT);
-        assert!(found.jumps.is_empty() && found.trends.iter().all(|trend| !trend.is_significant));
+        assert!(found.jumps.is_empty() && found.trends.iter().all(|trend| trend.is_significant == Some(false)));
     }
 }

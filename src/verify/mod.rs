@@ -10,6 +10,7 @@ pub mod difference;
 pub mod distances;
 pub mod drift;
 pub mod figures;
+mod kendall;
 pub mod matrix_check;
 pub mod matrix_text;
 pub mod stability;

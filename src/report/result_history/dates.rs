@@ -1,7 +1,8 @@
 //! Dates in files and in the names of files.
 
 /// Days since 1970 of the first date in a text: `2026-03-01`, `2026_3_1`, `20260301`, and a time of day behind it
-/// (`T14:30:05`, `_14-30`, ` 1430`). `None` if there is none.
+/// (`T14:30:05`, `_14-30`, ` 1430`), which is brought to UTC where its zone stands behind it (`Z`, `+02:00`); others are taken for
+/// UTC. `None` if there is none.
 pub(super) fn days_in(text: &str) -> Option<f64> {
     let chars: Vec<char> = text.chars().collect();
     (0..chars.len()).filter(|at| *at == 0 || !chars[at - 1].is_ascii_digit()).find_map(|at| {
@@ -36,12 +37,33 @@ fn time_of_day(chars: &[char], at: usize) -> f64 {
     let read = || {
         let (parted, at) = separator(chars, at, &['T', 't', ' ', '_', '-']);
         let (hours, at) = digits(chars, at, 2, 2).filter(|_| parted)?;
-        let (_, at) = separator(chars, at, &WITHIN);
-        let (minutes, at) = digits(chars, at, 2, 2)?;
-        let (_, at) = separator(chars, at, &WITHIN);
-        let seconds = digits(chars, at, 2, 2).map_or(0, |(seconds, _)| seconds);
-        (hours < 24 && minutes < 60 && seconds < 61)
-            .then(|| f64::from(hours * 3600 + minutes * 60 + seconds) / 86_400.0)
+        let (within_parts, minutes_at) = separator(chars, at, &WITHIN);
+        let (minutes, minutes_end) = digits(chars, minutes_at, 2, 2)?;
+        // Parted as hours and minutes are: what stands behind another sign is a zone, or a number.
+        let (within_again, seconds_at) = separator(chars, minutes_end, &chars[at..minutes_at]);
+        let seconds = digits(chars, seconds_at, 2, 2).filter(|_| within_again == within_parts);
+        let (seconds, at) = seconds.unwrap_or((0, minutes_end));
+        let of_day = f64::from(hours * 3600 + minutes * 60 + seconds) / 86_400.0;
+        (hours < 24 && minutes < 60 && seconds < 61).then(|| of_day - offset(&chars[at..]))
+    };
+    read().unwrap_or(0.0)
+}
+
+/// By how much a time zone is ahead of UTC, as a part of a day: `+02:00`, `+0200`, `+02`, and `-05:00` with its colon, as other
+/// numbers in names of files have a hyphen before them too. 0 if there is none.
+fn offset(behind_time: &[char]) -> f64 {
+    let read = || {
+        let fraction = match behind_time.first() {
+            Some('.' | ',') => 1 + behind_time.iter().skip(1).take_while(|c| c.is_ascii_digit()).count(),
+            _ => 0,
+        };
+        let sign = behind_time.get(fraction).filter(|sign| matches!(sign, '+' | '-'))?;
+        let (hours, at) = digits(behind_time, fraction + 1, 2, 2)?;
+        let (parted, at) = separator(behind_time, at, &[':']);
+        let minutes = digits(behind_time, at, 2, 2);
+        let ahead = f64::from(hours * 60 + minutes.map_or(0, |(minutes, _)| minutes)) / 1440.0;
+        let is_zone = hours < 24 && (*sign == '+' || parted && minutes.is_some());
+        is_zone.then_some(if *sign == '+' { ahead } else { -ahead })
     };
     read().unwrap_or(0.0)
 }
@@ -108,5 +130,18 @@ mod tests {
             assert_eq!(days_in(noon).map(f64::fract), Some(0.5), "{noon}");
         }
         assert_eq!(days_in("20260301-7.json").map(f64::fract), Some(0.0));
+        for (text, minutes) in [
+            ("2026-03-01T14:30:00+02:00", 750),
+            ("2026-03-01T14:30:00.25+0200", 750),
+            ("20260301T143000+02.json", 750),
+            ("2026-03-01T14:30-05:30", 1200),
+            ("2026-03-01T00:30+02:00", -90),
+            ("20260301_1430-05.json", 870),
+            ("20260301_1430-0500.json", 870),
+        ] {
+            let found = days_in(text).zip(days_in("2026-03-01")).map_or(f64::NAN, |(found, day)| found - day);
+            assert!((found * 1440.0 - f64::from(minutes)).abs() < 1e-6, "{text}: {found}");
+        }
+        assert_eq!(days_in("2026-03-01T00:30+02:00").map(date_text).as_deref(), Some("2026-02-28"));
     }
 }

@@ -6,16 +6,17 @@ pub mod file;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::calibrate::{Mount, best_available};
+use crate::calibrate::Mount;
 use crate::geometry::Vec3;
-use crate::session::{self, measure};
+use crate::session;
 use crate::sheet::natural_key;
 use crate::text::compare_results as words;
 use crate::verify::difference::{PointShift, Stated, point_shift};
 use crate::verify::drift::{Drift, Epoch, drift};
-use crate::watch::{Cancelled, Watch};
+use crate::watch::Watch;
 
 use self::dates::{date_text, days_in};
+use super::best_solution;
 use super::calibration_file::{StatedInFile, read_calibration};
 
 /// Files of a folder that are looked at.
@@ -82,7 +83,7 @@ pub fn read_compared(path: &Path, watch: &mut dyn Watch) -> Result<Compared, Not
             let compared = Compared {
                 name: read.name,
                 days,
-                mount: read.mount,
+                mount: read.mount.unwrap_or(Mount::OnFlange),
                 stated: Stated { flange_from_sensor: read.flange_from_sensor, covariance },
                 is_nearest: !read.check.is_rotation(),
                 reference_point_in_sensor_mm,
@@ -98,12 +99,8 @@ pub fn read_compared(path: &Path, watch: &mut dyn Watch) -> Result<Compared, Not
         NotCompared::Wrong(if is_session { error.to_string() } else { not_a_calibration.to_string() })
     })?;
     let computed = |reason: String| NotCompared::NothingComputed(format!("{file_name}: {reason}"));
-    let cancelled = |cancelled: Cancelled| computed(cancelled.to_string());
-    let measured = measure(&session, None, watch).map_err(cancelled)?;
-    let problem = session::problem(&session, &measured).map_err(|refusal| computed(refusal.to_string()))?;
-    let results = problem.solve_all(problem.methods(), watch).map_err(cancelled)?;
-    let reason = || results.iter().find_map(|result| result.outcome.as_ref().err()).map(ToString::to_string);
-    let best = best_available(&results).ok_or_else(|| computed(reason().unwrap_or_default()))?;
+    let best =
+        best_solution(&session, watch).map_err(|cancelled| computed(cancelled.to_string()))?.map_err(computed)?;
     let date = session.unknown.get("date").and_then(serde_json::Value::as_str);
     let compared = Compared {
         name: format!("{file_name}: {}", best.method.id()),

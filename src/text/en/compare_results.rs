@@ -169,7 +169,11 @@ pub fn trend_line(axis: &str, trend: &Trend, is_by_dates: bool) -> String {
     /// A slope a day is too small to be read.
     const DAYS: f64 = 30.0;
     let (factor, per) = if is_by_dates { (DAYS, "in 30 days") } else { (1.0, "a calibration") };
-    let verdict = if trend.is_significant { "drifts" } else { "no drift beyond chance" };
+    let verdict = match trend.is_significant {
+        Some(true) => "drifts",
+        Some(false) => "no drift beyond chance",
+        None => "too few calibrations to tell a drift from chance",
+    };
     format!("trend {axis:<12} {} {per}: {verdict}\n", with_std(trend.slope * factor, Some(trend.std * factor), 4))
 }
 
