@@ -180,9 +180,10 @@ fn case_of(
 /// What was measured, as text and as JSON.
 fn measured(args: &ScanArgs, case: &Case) -> Result<(String, Value), Refusal> {
     let Case { cloud, known, .. } = case;
+    let of_known = known.wanted();
     let wanted = Wanted {
-        teeth: args.teeth || known.pitch_mm.is_some() || known.height_mm.is_some(),
-        diameter: known.diameter_mm.is_some(),
+        teeth: args.teeth || of_known.teeth,
+        diameter: of_known.diameter,
         round: args.cylinder.then_some(RoundKind::Cylinder).or_else(|| args.ball.then_some(RoundKind::Ball)),
     };
     let shapes = shapes(cloud, &PointSet::all(cloud), wanted);

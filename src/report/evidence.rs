@@ -5,7 +5,7 @@ use crate::calibrate::{MethodResult, Problem, Solution, best_available};
 use crate::diagnose::{Diagnosis, diagnose_any};
 use crate::geometry::{Flange, Sensor, Transform};
 use crate::plan::{Limits, Plan, next_stations};
-use crate::scan::{Cloud, PointSet, Region, ScanError, SegmentOptions, Shapes, Wanted, plane_regions, shapes};
+use crate::scan::{Cloud, PointSet, Region, ScanError, SegmentOptions, Shapes, plane_regions, shapes};
 use crate::session::{self, FurtherTarget, Known, Measured, Session, SessionScan, measure};
 use crate::text::verify::own_target_name;
 use crate::text::workpiece as scan_words;
@@ -199,7 +199,7 @@ impl Evidence {
             name: name.to_owned(),
             flange_from_sensor: *flange_from_sensor,
         };
-        let answer = self.answer().map(|(_, solution)| named(solution.method.id(), &solution.flange_from_sensor));
+        let answer = self.answer().map(|(_, solution)| NamedCalibration::of(solution));
         let given = || {
             let verification = self.verification.as_ref()?;
             let first = verification.calibrations.first()?;
@@ -247,11 +247,10 @@ fn examined_part(
     watch: &mut dyn Watch,
 ) -> Result<PartEvidence, Cancelled> {
     let known = scan.known;
-    let wanted = Wanted::of_known(known.pitch_mm.is_some() || known.height_mm.is_some(), known.diameter_mm.is_some());
     let outcome = match Cloud::from_scan(&scan.captures, &calibration.flange_from_sensor) {
         Err(error) => Err(error),
         Ok(cloud) => {
-            let shapes = shapes(&cloud, &PointSet::all(&cloud), wanted);
+            let shapes = shapes(&cloud, &PointSet::all(&cloud), known.wanted());
             let regions = plane_regions(&cloud, &SegmentOptions::default(), &shapes, watch)?;
             Ok(MeasuredPart { cloud, regions, shapes })
         }

@@ -81,14 +81,6 @@ pub struct Wanted {
     pub round: Option<RoundKind>,
 }
 
-impl Wanted {
-    /// What is asked for where only what is known of a part says so.
-    #[must_use]
-    pub const fn of_known(has_teeth: bool, has_diameter: bool) -> Self {
-        Self { teeth: has_teeth, diameter: has_diameter, round: None }
-    }
-}
-
 /// What was found beside planes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shapes {

@@ -9,6 +9,7 @@ use crate::calibrate::{Mount, SideChoice};
 use crate::geometry::{
     Base, Flange, PoseConvention, PoseNotation, Profile, Rigid, Sensor as SensorFrame, Transform, Vec3,
 };
+use crate::scan::Wanted;
 
 /// Fields of a JSON object that we do not know; they survive load and save.
 ///
@@ -103,6 +104,15 @@ pub struct Known {
     pub height_mm: Option<f64>,
     /// Diameter of a ball or cylinder, mm.
     pub diameter_mm: Option<f64>,
+}
+
+impl Known {
+    /// What is looked for in the part's points where nobody asks for more.
+    #[must_use]
+    pub const fn wanted(&self) -> Wanted {
+        let teeth = self.pitch_mm.is_some() || self.height_mm.is_some();
+        Wanted { teeth, diameter: self.diameter_mm.is_some(), round: None }
+    }
 }
 
 /// Another target that the same sensor measured, on the same robot: to verify a calibration with, or to solve along.

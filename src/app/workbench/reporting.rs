@@ -64,7 +64,7 @@ impl Workbench {
         });
     }
 
-    /// Writes what is shown; other files in the folder are left alone.
+    /// Writes what is shown, in place of an earlier report in the folder.
     pub(super) fn write_report(&mut self, folder: PathBuf, options: Options) {
         let Some(found) = self.report.last() else { return };
         let gathered = Arc::clone(&found.value);

@@ -314,10 +314,7 @@ impl Workbench {
             let scan = scans.get(scan_idx).ok_or_else(|| words::NO_SCAN.to_owned())?;
             let cloud =
                 Cloud::from_scan(&scan.captures, &found.flange_from_sensor).map_err(|error| error.to_string())?;
-            let wanted = Wanted::of_known(
-                scan.known.pitch_mm.is_some() || scan.known.height_mm.is_some(),
-                scan.known.diameter_mm.is_some(),
-            );
+            let wanted = scan.known.wanted();
             let cloud = Arc::new(cloud);
             let shapes = shapes(&cloud, &PointSet::all(&cloud), wanted);
             let Ok(regions) = plane_regions(&cloud, &SegmentOptions::default(), &shapes, watch) else {

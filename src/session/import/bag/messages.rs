@@ -162,7 +162,7 @@ pub(super) fn laser_scan(message: &[u8]) -> Result<Points, BadMessage> {
 }
 
 /// Points of a cloud; a line has thousands.
-const MAX_POINTS: usize = 16_000_000;
+const MAX_POINTS_OF_A_CLOUD: usize = 16_000_000;
 
 /// Where a coordinate stands in a point of a cloud.
 #[derive(Clone, Copy, Debug)]
@@ -218,7 +218,7 @@ pub(super) fn point_cloud(message: &[u8]) -> Result<Points, BadMessage> {
         return Err(layout(format!("x, y and z that overlap, at {}, {} and {}", x.offset, y.offset, z.offset)));
     }
     let num_points = width.saturating_mul(height);
-    if num_points > MAX_POINTS {
+    if num_points > MAX_POINTS_OF_A_CLOUD {
         return Err(BadMessage::Value { found: format!("{num_points} points"), needed: "no more than 16 million" });
     }
     let read = |point: &[u8], field: Field| -> f64 {
