@@ -14,12 +14,12 @@
 //! | 5 | [`text`] | wording |
 //! | 4 | [`device`], [`diagnose`], [`simulate`] | robots and sensors, the search for the largest arc, the simulated cell · what is wrong with a session, and its remedies · simulated sessions |
 //! | 3 | [`session`], [`plan`], [`verify`] | the document: model, edits, history, table, file format, imports, checks, measuring · where to measure next · what a calibration is worth on other data |
-//! | 2 | [`calibrate`], [`scan`] | hand-eye methods, least squares on SE(3), uncertainty, validation · points of a scanned part: clouds, planes, teeth, cylinders |
+//! | 2 | [`calibrate`], [`odometry`], [`scan`] | hand-eye methods, least squares on SE(3), uncertainty, validation · the motion of a camera from its images · points of a scanned part: clouds, planes, teeth, cylinders |
 //! | 1 | [`fit`], [`scene`], `sheet` | circle fits, the extraction of arcs and edges · what a laser line sees · numbers in text of any origin |
 //! | 0 | [`geometry`], [`watch`], `whole_file` | frames, rotations, conventions, profile, statistics · progress and cancel · files replaced in one step |
 //!
 //! # Invariants
-//! - `geometry`, `fit`, `calibrate`, `plan`, `verify` and `diagnose` are pure: no I/O, threads, clock or unseeded randomness. Same input, same bits.
+//! - `geometry`, `fit`, `calibrate`, `odometry`, `plan`, `verify` and `diagnose` are pure: no I/O, threads, clock or unseeded randomness. Same input, same bits.
 //! - Every transform is named `dst_from_src`. Millimetres and radians inside; degrees only at the edges, in the name.
 //! - A poor result is not an error: it is a solution with warnings. An error means that nothing could be computed.
 
@@ -30,6 +30,7 @@ pub mod device;
 pub mod diagnose;
 pub mod fit;
 pub mod geometry;
+pub mod odometry;
 pub mod plan;
 pub mod report;
 pub mod scan;

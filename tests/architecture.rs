@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// A module may name only floors below its own.
-const FLOORS: [(&str, u8); 19] = [
+const FLOORS: [(&str, u8); 20] = [
     ("geometry", 0),
     ("watch", 0),
     ("whole_file", 0),
@@ -13,6 +13,7 @@ const FLOORS: [(&str, u8); 19] = [
     ("scene", 1),
     ("sheet", 1),
     ("calibrate", 2),
+    ("odometry", 2),
     ("scan", 2),
     ("plan", 3),
     ("verify", 3),
@@ -28,7 +29,7 @@ const FLOORS: [(&str, u8); 19] = [
 ];
 
 /// Floors without I/O, threads, clock, log or serde: same input, same bits.
-const PURE: [&str; 6] = ["geometry", "fit", "calibrate", "plan", "verify", "diagnose"];
+const PURE: [&str; 7] = ["geometry", "fit", "calibrate", "odometry", "plan", "verify", "diagnose"];
 const IMPURE_NAMES: [&str; 7] = ["std::fs", "std::thread", "std::time", "std::io", "serde", "log::", "rand_core"];
 
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {

@@ -25,7 +25,7 @@ pub mod transform;
 
 pub use angle_order::{AngleOrder, Axis};
 pub use convention::PoseConvention;
-pub use frame::{Base, Flange, Frame, Sensor, Tcp};
+pub use frame::{Base, DepthCamera, Flange, Frame, Sensor, Target, Tcp, World};
 pub use notation::PoseNotation;
 pub use profile::Profile;
 pub use scatter::Scatter;
