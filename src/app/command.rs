@@ -14,6 +14,7 @@ use crate::verify::Calibration;
 use super::cell::CellCommand;
 use super::workbench::NoticeKind;
 use super::workbench::scans::ScanCommand;
+use super::workbench::sequence::SequenceCommand;
 
 impl Command {
     /// Reads what a user has pointed at: a session is opened, anything else goes to the import's preview.
@@ -130,6 +131,8 @@ pub enum Command {
     Redo,
     /// Solves the session as it is now; needed only after a cancel, as every edit solves by itself.
     Solve,
+    /// What is asked of an RGB-D sequence.
+    Sequence(SequenceCommand),
     /// Stops the solver; the last results stay.
     CancelSolve,
     /// Examines the results as they are now; needed only after a cancel, as new results are examined by themselves.

@@ -47,6 +47,8 @@ pub enum Purpose {
     ReportFolder,
     /// Choosing a file to write the picture of a plot to.
     Picture,
+    /// Choosing a file to write the motion of a sequence to.
+    SequenceFile,
 }
 
 /// Files of poses and profiles by their endings.
@@ -71,6 +73,7 @@ impl Purpose {
             Self::WatchedFolder => capture_words::FOLDER_TITLE,
             Self::ToolFrame => tool_frame_words::SAVE_TITLE,
             Self::Picture => report_words::PICTURE_TITLE,
+            Self::SequenceFile => sequence_words::SAVE_TITLE,
             Self::ReportFolder => report_words::REPORT_FOLDER_TITLE,
         }
     }
@@ -81,7 +84,7 @@ impl Purpose {
         match self {
             Self::Open | Self::OpenPoints => words::OPEN,
             Self::Calibration => workpiece_words::USE_BUTTON,
-            Self::Save | Self::ToolFrame | Self::Picture | Self::ReportFolder => words::SAVE,
+            Self::Save | Self::ToolFrame | Self::Picture | Self::SequenceFile | Self::ReportFolder => words::SAVE,
             Self::ImportFiles | Self::ImportFolder | Self::AddSession => import_words::IMPORT_BUTTON,
             Self::AddFurther => verify_words::ADD_TARGET_BUTTON,
             Self::ExportPoses | Self::ExportProfiles | Self::ExportPoints => import_words::EXPORT_BUTTON,
@@ -92,7 +95,7 @@ impl Purpose {
     /// Whether a file is written, so that one that is there is replaced.
     #[must_use]
     pub const fn writes_a_file(self) -> bool {
-        matches!(self, Self::Save | Self::ExportPoses | Self::ExportPoints | Self::ToolFrame | Self::Picture)
+        matches!(self, Self::Save | Self::ExportPoses | Self::ExportPoints | Self::ToolFrame | Self::Picture | Self::SequenceFile)
     }
 }
 
@@ -181,7 +184,7 @@ fn ask(purpose: Purpose, suggested_name: &str) -> Answer {
             all(dialog).pick_file().map(one)
         }
         Purpose::Calibration => all(dialog).pick_file().map(one),
-        Purpose::ToolFrame | Purpose::Picture => all(dialog).set_file_name(suggested_name).save_file().map(one),
+        Purpose::ToolFrame | Purpose::Picture | Purpose::SequenceFile => all(dialog).set_file_name(suggested_name).save_file().map(one),
         Purpose::ImportFolder | Purpose::ExportProfiles | Purpose::WatchedFolder | Purpose::ReportFolder => {
             dialog.pick_folder().map(one)
         }

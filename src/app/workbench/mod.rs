@@ -8,6 +8,7 @@ mod imports;
 mod keeping;
 pub mod reporting;
 pub mod scans;
+pub mod sequence;
 mod studies;
 mod verifying;
 
@@ -34,6 +35,7 @@ pub use self::imports::ImportDraft;
 use self::imports::Imports;
 use self::reporting::{Gathered, Reported};
 use self::scans::Scans;
+use self::sequence::SequenceBench;
 pub use self::studies::Results;
 use self::verifying::Added;
 
@@ -114,6 +116,7 @@ pub struct Workbench {
     imports: Imports,
     exporting: Slot<Exported>,
     scans: Scans,
+    sequence: SequenceBench,
     report: Study<Arc<Gathered>>,
     reporting: Slot<(Option<u64>, Reported)>,
     written_report: Option<PathBuf>,
@@ -154,6 +157,7 @@ impl Workbench {
             imports: Imports::default(),
             exporting: Slot::default(),
             scans: Scans::default(),
+            sequence: SequenceBench::default(),
             report: Study::default(),
             reporting: Slot::default(),
             written_report: None,
@@ -273,6 +277,7 @@ impl Workbench {
             || self.imports.is_busy()
             || self.exporting.is_running()
             || self.scans.is_busy()
+            || self.sequence.is_busy()
             || self.report.is_running()
             || self.reporting.is_running()
     }
@@ -325,6 +330,7 @@ impl Workbench {
             Command::AddFurther(path) => self.start_adding_further(path),
             Command::GiveCalibration(calibration) => self.give_calibration(*calibration),
             Command::WithdrawCalibration(name) => self.withdraw_calibration(&name),
+            Command::Sequence(command) => self.command_sequence(command),
             Command::Scan(command) => self.command_scans(*command),
             Command::Cell(command) => self.command_cell(*command),
             Command::GatherReport => self.gather_report(),
@@ -352,6 +358,8 @@ impl Workbench {
             self.take_look(&outcome);
         }
         changed |= self.take_news_of_recovery();
+        // Before what was solved of it.
+        changed |= self.poll_sequence();
         if let Some(outcome) = self.solving.poll() {
             changed = true;
             match outcome {

@@ -24,6 +24,7 @@ pub mod poses;
 pub mod report;
 pub mod report_cli;
 pub mod report_panel;
+pub mod sequence;
 pub mod shell;
 pub mod start;
 pub mod tool_frame;

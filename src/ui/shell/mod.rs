@@ -19,6 +19,7 @@ use crate::text::shell as words;
 use self::live_cell::CellWatch;
 use super::actions::{self, Action};
 use super::arcs::ArcsState;
+use super::sequence::SequenceState;
 use super::capture::CaptureState;
 use super::compare::CompareState;
 use super::diagnosis::DiagnosisState;
@@ -80,6 +81,7 @@ pub struct Shell {
     start: StartState,
     poses: PosesState,
     arcs: ArcsState,
+    sequence: SequenceState,
     capture: CaptureState,
     cell_watch: CellWatch,
     compare: CompareState,
@@ -142,6 +144,7 @@ impl Shell {
             start,
             poses: PosesState::default(),
             arcs: ArcsState::default(),
+            sequence: SequenceState::default(),
             capture: CaptureState::default(),
             cell_watch: CellWatch::default(),
             compare: CompareState::default(),
@@ -343,6 +346,9 @@ impl Shell {
                     capture::show(ui, &mut context, &mut self.persisted.cell, &mut self.capture);
                 }
                 Step::Poses => poses::panel::show(ui, &mut context, &mut self.poses),
+                Step::Arcs if rail::is_sequence(context.workbench) => {
+                    sequence::show(ui, &mut context, &mut self.sequence);
+                }
                 Step::Arcs => arcs::show(ui, &mut context, &mut self.arcs),
                 Step::Compare => compare::show(ui, &mut context, &mut self.compare),
                 Step::Diagnosis => diagnosis::show(ui, &mut context, &mut self.diagnosis),
