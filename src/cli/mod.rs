@@ -14,6 +14,7 @@ pub mod compare;
 pub mod export;
 pub mod history;
 pub mod import;
+pub mod odometry;
 pub mod plan;
 pub mod report;
 pub mod scan;
@@ -63,6 +64,8 @@ pub enum Command {
     Compare(compare::CompareArgs),
     /// Lists the calibrations of a folder over time: drift and jumps
     History(history::HistoryArgs),
+    /// Finds the motion of an RGB-D camera from a recorded sequence: trajectory, distance, heading
+    Odometry(odometry::OdometryArgs),
     /// Plans the stations to measure next
     Plan(plan::PlanArgs),
     /// Writes a simulated session with its truth
@@ -89,6 +92,7 @@ impl Command {
             Self::Scan(args) => scan::run(args),
             Self::Compare(args) => compare::run(args),
             Self::History(args) => history::run(args),
+            Self::Odometry(args) => odometry::run(args),
             Self::Plan(args) => plan::run(args),
             Self::Simulate(args) => simulate::run(args),
             Self::Cell(args) => cell::run(args),
