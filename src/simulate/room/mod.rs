@@ -63,11 +63,12 @@ impl Room {
         let (random, texture) = (&mut Random::new(seed, stream::ROOM), &mut Random::new(seed, stream::TEXTURE));
         let lattice = Lattice::new(texture);
         let centre = [0.0, 0.0, HALF_MM[2]];
-        // The faces of the walls; floor and ceiling have none.
-        let walls = (0..4).fold(Material::patterned(texture), |material, face| {
-            material.with_posters(5, &Solid::face_of_block(HALF_MM, face), texture)
+        // Posters on the walls; none on ceiling and floor, whose faces come last.
+        let faces = (0..6).map(|face| {
+            let num_posters = if face < 4 { 5 } else { 0 };
+            Material::patterned(texture).with_posters(num_posters, &Solid::face_of_block(HALF_MM, face), texture)
         });
-        let mut solids = vec![Solid::room(HALF_MM, centre, walls)];
+        let mut solids = vec![Solid::room(HALF_MM, centre, faces.collect())];
         let bench_half = [600.0, 450.0, 0.5 * BENCH_HEIGHT_MM];
         solids.push(Solid::block(bench_half, [0.0, 0.0, bench_half[2]], 0.0, Material::patterned(texture)));
         // On the bench: boxes and a ball, as they lie.
@@ -105,7 +106,7 @@ impl Room {
     /// Bare walls of one colour: nothing for a camera to go by.
     #[must_use]
     pub fn blank() -> Self {
-        let walls = Solid::room(HALF_MM, [0.0, 0.0, HALF_MM[2]], Material::plain());
+        let walls = Solid::room(HALF_MM, [0.0, 0.0, HALF_MM[2]], vec![Material::plain()]);
         Self { solids: vec![walls], lattice: Lattice::new(&mut Random::new(0, stream::TEXTURE)), lamps: Vec::new() }
     }
 

@@ -39,14 +39,47 @@ struct Wave {
 
 impl Swing {
     /// Waves of the given amplitudes and frequencies, in phases of their own.
-    fn new(waves: &[(f64, f64)], random: &mut Random) -> Self {
-        let wave =
-            |(amplitude, per_s): &(f64, f64)| Wave { amplitude: *amplitude, per_s: *per_s, phase: TAU * random.unit() };
+    fn new(waves: Waves, unit: f64, random: &mut Random) -> Self {
+        let wave = |(amplitude, per_s): &(f64, f64)| Wave {
+            amplitude: unit * amplitude,
+            per_s: *per_s,
+            phase: TAU * random.unit(),
+        };
         Self(waves.iter().map(wave).collect())
     }
 
     fn at(&self, time_s: f64) -> f64 {
         self.0.iter().map(|wave| wave.amplitude * (TAU * wave.per_s * time_s + wave.phase).sin()).sum()
+    }
+}
+
+/// Amplitudes and frequencies, 1/s.
+type Waves = &'static [(f64, f64)];
+
+/// How a carrier swings along x, y and z of the room, mm, and about the camera's axes, degrees. The frequencies have no common
+/// period.
+const fn waves(carrier: Carrier) -> ([Waves; 3], [Waves; 3]) {
+    match carrier {
+        Carrier::Vehicle => (
+            [&[(30.0, 0.13)], &[(30.0, 0.17), (2.5, 0.95)], &[(4.0, 1.9)]],
+            [&[(3.0, 0.19), (0.25, 1.9)], &[(6.0, 0.11), (0.3, 0.95)], &[(1.0, 0.23), (0.4, 0.95)]],
+        ),
+        Carrier::Hand => (
+            [
+                &[(260.0, 0.11), (60.0, 0.29), (1.0, 4.1)],
+                &[(330.0, 0.09), (70.0, 0.23), (1.0, 3.3)],
+                &[(120.0, 0.13), (40.0, 0.31), (1.0, 5.3)],
+            ],
+            [
+                &[(8.0, 0.14), (2.0, 0.37), (0.1, 4.7)],
+                &[(11.0, 0.12), (3.0, 0.33), (0.1, 5.9)],
+                &[(6.0, 0.10), (2.0, 0.27), (0.1, 3.7)],
+            ],
+        ),
+        Carrier::Robot => (
+            [&[(110.0, 0.10), (40.0, 0.21)], &[(160.0, 0.12), (40.0, 0.19)], &[(90.0, 0.14), (30.0, 0.23)]],
+            [&[(15.0, 0.11), (5.0, 0.22)], &[(17.0, 0.09), (6.0, 0.20)], &[(20.0, 0.13), (8.0, 0.18)]],
+        ),
     }
 }
 
@@ -66,34 +99,9 @@ impl Path {
     pub fn new(carrier: Carrier, has_stops: bool, seed: u64) -> Self {
         let random = &mut Random::new(seed, stream::PATH);
         let start_angle = TAU * random.unit();
-        // Amplitude and frequency of each wave, mm or degrees and 1/s. The frequencies have no common period.
-        let (shift_mm, turn_deg): ([&[(f64, f64)]; 3], [&[(f64, f64)]; 3]) = match carrier {
-            Carrier::Vehicle => (
-                [&[(30.0, 0.13)], &[(30.0, 0.17), (2.5, 0.95)], &[(4.0, 1.9)]],
-                [&[(3.0, 0.19), (0.25, 1.9)], &[(6.0, 0.11), (0.3, 0.95)], &[(1.0, 0.23), (0.4, 0.95)]],
-            ),
-            Carrier::Hand => (
-                [
-                    &[(260.0, 0.11), (60.0, 0.29), (1.0, 4.1)],
-                    &[(330.0, 0.09), (70.0, 0.23), (1.0, 3.3)],
-                    &[(120.0, 0.13), (40.0, 0.31), (1.0, 5.3)],
-                ],
-                [
-                    &[(8.0, 0.14), (2.0, 0.37), (0.1, 4.7)],
-                    &[(11.0, 0.12), (3.0, 0.33), (0.1, 5.9)],
-                    &[(6.0, 0.10), (2.0, 0.27), (0.1, 3.7)],
-                ],
-            ),
-            Carrier::Robot => (
-                [&[(110.0, 0.10), (40.0, 0.21)], &[(160.0, 0.12), (40.0, 0.19)], &[(90.0, 0.14), (30.0, 0.23)]],
-                [&[(15.0, 0.11), (5.0, 0.22)], &[(17.0, 0.09), (6.0, 0.20)], &[(20.0, 0.13), (8.0, 0.18)]],
-            ),
-        };
-        let shift_mm = shift_mm.map(|waves| Swing::new(waves, random));
-        let turn = turn_deg.map(|waves| {
-            let waves: Vec<(f64, f64)> = waves.iter().map(|(deg, per_s)| (deg.to_radians(), *per_s)).collect();
-            Swing::new(&waves, random)
-        });
+        let (shift_mm, turn_deg) = waves(carrier);
+        let shift_mm = shift_mm.map(|waves| Swing::new(waves, 1.0, random));
+        let turn = turn_deg.map(|waves| Swing::new(waves, 1_f64.to_radians(), random));
         Self { carrier, has_stops, start_angle, shift_mm, turn }
     }
 

@@ -147,7 +147,7 @@ impl Room {
     fn ray_light(&self, view: &View<'_>, ray: &Ray, hit: &Hit) -> [f32; 3] {
         let surface = self.surface(view, ray, hit);
         let brightness = 255.0 * self.brightness(along(ray.origin, hit.z_mm, ray.direction), surface.normal);
-        let albedo = self.solids[hit.solid].material.albedo(&self.lattice, &surface.place);
+        let albedo = self.solids[hit.solid].material(hit.face).albedo(&self.lattice, &surface.place);
         albedo.map(|albedo| albedo * narrow(brightness))
     }
 

@@ -49,7 +49,8 @@ pub(super) struct Solid {
     turn: [f64; 2],
     /// Of a ball about the centre that holds it all.
     reach: f64,
-    pub material: Material,
+    /// One for each face, or one for all.
+    materials: Vec<Material>,
 }
 
 /// What a ray met.
@@ -64,24 +65,37 @@ pub(super) struct Surface {
 }
 
 impl Solid {
-    pub fn room(half: Point, centre: Point, material: Material) -> Self {
-        Self { shape: Shape::Block { half, is_room: true }, centre, turn: [1.0, 0.0], reach: f64::INFINITY, material }
+    /// A room that is seen from inside, with a material for each face or one for all.
+    pub fn room(half: Point, centre: Point, materials: Vec<Material>) -> Self {
+        Self { shape: Shape::Block { half, is_room: true }, centre, turn: [1.0, 0.0], reach: f64::INFINITY, materials }
     }
 
     /// Turned by twice the angle whose tangent is `half_turn_tan`.
     pub fn block(half: Point, centre: Point, half_turn_tan: f64, material: Material) -> Self {
         let squared = half_turn_tan * half_turn_tan;
         let turn = [(1.0 - squared) / (1.0 + squared), 2.0 * half_turn_tan / (1.0 + squared)];
-        Self { shape: Shape::Block { half, is_room: false }, centre, turn, reach: dot(half, half).sqrt(), material }
+        Self {
+            shape: Shape::Block { half, is_room: false },
+            centre,
+            turn,
+            reach: dot(half, half).sqrt(),
+            materials: vec![material],
+        }
     }
 
     pub fn ball(radius: f64, centre: Point, material: Material) -> Self {
-        Self { shape: Shape::Ball { radius }, centre, turn: [1.0, 0.0], reach: radius, material }
+        Self { shape: Shape::Ball { radius }, centre, turn: [1.0, 0.0], reach: radius, materials: vec![material] }
     }
 
     pub fn column(radius: f64, half_height: f64, centre: Point, material: Material) -> Self {
         let reach = (radius * radius + half_height * half_height).sqrt();
-        Self { shape: Shape::Column { radius, half_height }, centre, turn: [1.0, 0.0], reach, material }
+        Self {
+            shape: Shape::Column { radius, half_height },
+            centre,
+            turn: [1.0, 0.0],
+            reach,
+            materials: vec![material],
+        }
     }
 
     /// How far along the ray, in lengths of its direction, and which face; faces are numbered for finding edges.
@@ -96,7 +110,7 @@ impl Solid {
             return None;
         }
         match self.shape {
-            Shape::Block { half, is_room } => block_distance(half, is_room, &self.into_own(ray)),
+            Shape::Block { half, is_room } => block_distance(half, is_room, &self.in_own(ray)),
             Shape::Ball { radius } => {
                 let discriminant = ahead * ahead - squared * (dot(to_centre, to_centre) - radius * radius);
                 let distance = (discriminant >= 0.0).then(|| (ahead - discriminant.sqrt()) / squared)?;
@@ -118,7 +132,7 @@ impl Solid {
     pub fn surface(&self, ray: &Ray, (distance, face): (f64, u8), pixel_mm: f64) -> Surface {
         /// Steeper places are filtered as if they were this steep.
         const LEAST_COS: f64 = 0.04;
-        let own_ray = self.into_own(ray);
+        let own_ray = self.in_own(ray);
         let at = along(own_ray.origin, distance, own_ray.direction);
         let axis = usize::from(face / 2);
         let side = if face % 2 == 0 { 1.0 } else { -1.0 };
@@ -156,7 +170,12 @@ impl Solid {
             Shape::Block { .. } => [width(first), width(second)],
             Shape::Ball { .. } | Shape::Column { .. } => [pixel_mm / incidence_cos; 2],
         };
-        Surface { normal: self.from_own(own_normal), incidence_cos, place: Place { at_mm, width_mm } }
+        Surface { normal: self.in_room(own_normal), incidence_cos, place: Place { at_mm, width_mm } }
+    }
+
+    /// What a face is made of.
+    pub fn material(&self, face: u8) -> &Material {
+        &self.materials[usize::from(face) % self.materials.len()]
     }
 
     /// The whole of a face of a block.
@@ -166,13 +185,13 @@ impl Solid {
         Place { at_mm: [FACE_SHIFT_MM * f64::from(face), 0.0], width_mm }
     }
 
-    fn into_own(&self, ray: &Ray) -> Ray {
+    fn in_own(&self, ray: &Ray) -> Ray {
         let [cos, sin] = self.turn;
         let turned = |v: Point| [cos * v[0] + sin * v[1], cos * v[1] - sin * v[0], v[2]];
         Ray { origin: turned(minus(ray.origin, self.centre)), direction: turned(ray.direction) }
     }
 
-    fn from_own(&self, v: Point) -> Point {
+    fn in_room(&self, v: Point) -> Point {
         let [cos, sin] = self.turn;
         [cos * v[0] - sin * v[1], sin * v[0] + cos * v[1], v[2]]
     }

@@ -34,7 +34,6 @@ impl Lattice {
 
 /// The patch before a coordinate, and how much the box shows of the next.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "coordinates are positive and below 2^31")]
-#[expect(clippy::cast_precision_loss, reason = "below 2^31")]
 fn neighbours(at: f64, width: f32) -> (usize, f32) {
     let before = at as u32;
     let between = (at - f64::from(before)) as f32;
