@@ -15,6 +15,7 @@ pub mod export;
 pub mod history;
 pub mod import;
 pub mod plan;
+mod progress;
 pub mod report;
 pub mod scan;
 pub mod screenshot;

@@ -65,7 +65,7 @@ pub fn write_folder(recording: RoomRecording, folder: &Path, watch: &mut dyn Wat
         let path = folder.join(name);
         fs::write(&path, text).map_err(not_written(&path))
     };
-    write("camera.json", &format!("{:#}\n", camera_json(recording.camera())))?;
+    write("camera.json", &format!("{:#}\n", camera_json(&recording.options().camera)))?;
     let total = recording.len();
     let mut lists = Lists::default();
     for (idx, frame) in recording.enumerate() {

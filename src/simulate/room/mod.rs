@@ -12,6 +12,7 @@ mod noise;
 mod path;
 mod render;
 mod sequence;
+mod session;
 mod solid;
 mod texture;
 
@@ -27,7 +28,7 @@ use texture::{Lattice, Material};
 
 pub use folder::{FolderError, write_folder};
 pub use noise::{CameraNoise, DepthNoise};
-pub use path::Carrier;
+pub use path::{Arm, Carrier};
 pub use sequence::{RoomFault, RoomFrame, RoomOptions, RoomRecording, kinect};
 
 /// Half the room along x, y and z, mm.

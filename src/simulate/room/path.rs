@@ -138,14 +138,16 @@ impl Path {
 }
 
 /// Where the robot stands and how the camera is mounted on it.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Arm {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arm {
+    /// Where the robot stands in the room.
     pub world_from_base: Transform<World, Base>,
+    /// The true calibration.
     pub flange_from_sensor: Transform<Flange, Sensor>,
 }
 
 impl Arm {
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         // Turned about the flange's z, and never quite square.
         let turn = so3::exp(Vec3::z() * FRAC_PI_2) * so3::exp(Vec3::new(0.041, -0.028, 0.017));
         Self {
@@ -157,6 +159,8 @@ impl Arm {
         }
     }
 
+    /// What the controller would report without an error, with the camera there.
+    #[must_use]
     pub fn base_from_flange(&self, world_from_sensor: &Transform<World, Sensor>) -> Transform<Base, Flange> {
         self.world_from_base.inverse() * *world_from_sensor * self.flange_from_sensor.inverse()
     }

@@ -26,6 +26,29 @@ pub enum RoomFault {
     Frozen,
 }
 
+impl RoomFault {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::Dark, Self::BlankWall, Self::BlankDepth, Self::Jump, Self::Frozen];
+
+    /// As it is asked for.
+    #[must_use]
+    pub const fn id(self) -> &'static str {
+        match self {
+            Self::Dark => "dark",
+            Self::BlankWall => "blank-wall",
+            Self::BlankDepth => "blank-depth",
+            Self::Jump => "jump",
+            Self::Frozen => "frozen",
+        }
+    }
+
+    /// The fault of an [`Self::id`].
+    #[must_use]
+    pub fn by_id(id: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|fault| fault.id() == id)
+    }
+}
+
 /// What is recorded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoomOptions {
@@ -66,8 +89,8 @@ impl Default for RoomOptions {
             has_stops: false,
             noise: CameraNoise::KINECT,
             exposure_s: 0.0,
-            position_std_mm: 0.05,
-            orientation_std_deg: 0.01,
+            position_std_mm: 0.02,
+            orientation_std_deg: 0.005,
             robot_clock_ahead_s: 0.0,
             faults: Vec::new(),
         }
@@ -137,16 +160,16 @@ impl RoomRecording {
         }
     }
 
-    /// The cameras.
+    /// What is recorded.
     #[must_use]
-    pub const fn camera(&self) -> &RgbdCamera {
-        &self.options.camera
+    pub const fn options(&self) -> &RoomOptions {
+        &self.options
     }
 
-    /// How the camera is truly mounted, where it is on a robot.
+    /// Where the robot stands and how the camera is truly mounted on it, where there is one.
     #[must_use]
-    pub fn flange_from_sensor(&self) -> Option<Transform<Flange, Sensor>> {
-        (self.options.carrier == Carrier::Robot).then_some(self.arm.flange_from_sensor)
+    pub fn arm(&self) -> Option<&Arm> {
+        (self.options.carrier == Carrier::Robot).then_some(&self.arm)
     }
 
     fn has(&self, fault: RoomFault, idx: usize) -> bool {
