@@ -38,7 +38,7 @@ pub struct RoomArgs {
     /// Cameras without noise, rounding or holes.
     #[arg(long)]
     pub perfect_cameras: bool,
-    /// Noise of a colour in the dark, levels of 255; 1 if not given.
+    /// Noise of a colour in the dark, levels of 255, in the light in proportion; 1 if not given.
     #[arg(long, value_name = "LEVELS", value_parser = color_std, conflicts_with = "perfect_cameras")]
     pub color_std: Option<f64>,
     /// How long the shutter is open: smears the images of a moving camera. 0 if not given.
@@ -120,7 +120,7 @@ pub(super) fn recording(args: &SimulateArgs) -> Result<RoomRecording, SimulateRe
         noise: if room.perfect_cameras {
             CameraNoise::NONE
         } else {
-            CameraNoise { color_std: room.color_std.unwrap_or(CameraNoise::KINECT.color_std), ..CameraNoise::KINECT }
+            room.color_std.map_or(CameraNoise::KINECT, |std| CameraNoise::KINECT.with_color_std(std))
         },
         exposure_s: room.exposure_ms.unwrap_or_default() / 1000.0,
         position_std_mm: args.position_std_mm,

@@ -14,6 +14,8 @@ mod render;
 mod sequence;
 mod session;
 mod solid;
+#[cfg(test)]
+mod tests;
 mod texture;
 
 use image::{ImageBuffer, RgbImage};

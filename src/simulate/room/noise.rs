@@ -79,6 +79,14 @@ impl CameraNoise {
         },
     };
 
+    /// The same with another colour noise in the dark, and in the light in proportion.
+    #[must_use]
+    pub fn with_color_std(self, color_std: f64) -> Self {
+        let ratio = color_std / Self::KINECT.color_std;
+        let color_variance_per_level = Self::KINECT.color_variance_per_level * ratio * ratio;
+        Self { color_std, color_variance_per_level, ..self }
+    }
+
     /// Exposes the light of an image with so many columns. `exposure` is 1 where it is right, `phase` where the bands begin.
     pub(super) fn expose(
         &self,

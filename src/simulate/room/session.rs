@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use crate::geometry::{Frame, Transform};
 use crate::session::{Robot, Session, Target};
 
+use super::path::written;
 use super::{Carrier, RoomRecording};
 
 impl RoomRecording {
@@ -30,7 +31,7 @@ impl RoomRecording {
             };
             let truth = json!({
                 "flange_from_sensor": pose(&arm.flange_from_sensor),
-                "base_from_world": pose(&arm.world_from_base.inverse()),
+                "base_from_world": pose(&written(&arm.world_from_base.inverse())),
                 "robot_clock_ahead_s": options.robot_clock_ahead_s,
             });
             session.unknown.insert("truth".to_owned(), truth);

@@ -185,6 +185,22 @@ impl Solid {
         Place { at_mm: [FACE_SHIFT_MM * f64::from(face), 0.0], width_mm }
     }
 
+    /// How far a place is from the surface, found without a ray.
+    #[cfg(test)]
+    pub fn off_surface_mm(&self, at: Point) -> f64 {
+        let own = self.in_own(&Ray { origin: at, direction: [0.0; 3] }).origin;
+        let off_box = |half: Point| {
+            let beyond = [0, 1, 2].map(|axis| own[axis].abs() - half[axis]);
+            let outside = beyond.map(|beyond| beyond.max(0.0));
+            dot(outside, outside).sqrt() + beyond.into_iter().fold(f64::NEG_INFINITY, f64::max).min(0.0)
+        };
+        match self.shape {
+            Shape::Block { half, .. } => off_box(half).abs(),
+            Shape::Ball { radius } => (dot(own, own).sqrt() - radius).abs(),
+            Shape::Column { radius, .. } => (own[0].hypot(own[1]) - radius).abs(),
+        }
+    }
+
     fn in_own(&self, ray: &Ray) -> Ray {
         let [cos, sin] = self.turn;
         let turned = |v: Point| [cos * v[0] + sin * v[1], cos * v[1] - sin * v[0], v[2]];
