@@ -16,6 +16,7 @@ pub mod history;
 pub mod import;
 pub mod odometry;
 pub mod plan;
+mod progress;
 pub mod report;
 pub mod scan;
 pub mod screenshot;
