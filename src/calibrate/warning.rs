@@ -2,6 +2,32 @@
 
 use crate::fit::Refusal;
 
+/// What would explain a pose that contradicts the others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PoseFault {
+    /// The target's pose is inverted: it fits as `target_from_sensor`.
+    Inverted,
+    /// The target is seen turned by half about one of its axes, or mirrored by its tilt: a flat marker read the wrong way.
+    Flipped,
+    /// Its place fits, its orientation does not.
+    Orientation,
+    /// Its orientation fits, its place does not.
+    Place,
+    /// Neither fits.
+    Both,
+}
+
+/// Which of the two lists of poses is given the wrong way round.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Inverted {
+    /// The robot's: they are `flange_from_base`, or the sensor is mounted the other way (on the flange, or fixed).
+    Robot,
+    /// The target's: they are `target_from_sensor`.
+    Target,
+    /// Both.
+    Both,
+}
+
 /// Something about a result that the user should know. Sentence and remedy come from [`crate::text`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Warning {
@@ -128,6 +154,33 @@ pub enum Warning {
         /// The median of the others, mm.
         typical_mm: f64,
     },
+    /// A target's pose that contradicts all others was left out.
+    PoseRejected {
+        /// Station.
+        label: String,
+        /// Capture, from 0.
+        capture_idx: usize,
+        /// How far it puts the target from where the others have it, mm.
+        off_mm: f64,
+        /// By how much it turns the target, degrees.
+        off_deg: f64,
+        /// What would explain it.
+        fault: PoseFault,
+    },
+    /// All poses fit far better with one of the two lists inverted.
+    StreamInverted {
+        /// Which.
+        inverted: Inverted,
+        /// Residual as given over residual with it inverted.
+        ratio: f64,
+    },
+    /// The target's poses are too far or too near by one factor: a board or marker of another size than was stated.
+    TargetScale {
+        /// The factor that its translations need.
+        factor: f64,
+        /// Its standard deviation.
+        std: f64,
+    },
     /// The solver stopped before it settled.
     NotConverged {
         /// Iterations made.
@@ -155,6 +208,9 @@ impl Warning {
             Self::RadiusDisagrees { .. } => "radius-disagrees",
             Self::StepDiffersFromPose { .. } => "step-differs-from-pose",
             Self::StationStandsOut { .. } => "station-stands-out",
+            Self::PoseRejected { .. } => "pose-rejected",
+            Self::StreamInverted { .. } => "stream-inverted",
+            Self::TargetScale { .. } => "target-scale",
             Self::NotConverged { .. } => "not-converged",
         }
     }
@@ -176,6 +232,8 @@ impl Warning {
                 | Self::RadiusDisagrees { .. }
                 | Self::ArcLargerThanBall { .. }
                 | Self::StationStandsOut { .. }
+                | Self::StreamInverted { .. }
+                | Self::TargetScale { .. }
                 | Self::NotConverged { .. }
         )
     }

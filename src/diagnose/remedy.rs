@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::calibrate::{Edge, SideChoice};
-use crate::geometry::{Profile, Transform};
+use crate::calibrate::{Edge, Mount, SideChoice};
+use crate::geometry::{Profile, Sensor, Target as TargetFrame, Transform};
 use crate::session::{Reading, Session, Target};
 
 use super::convention::PoseReading;
@@ -34,6 +34,12 @@ pub enum Remedy {
     ScaleProfiles(f64),
     /// This coordinate of all profiles (and reduced points) with the other sign.
     MirrorProfiles(Axis),
+    /// The sensor is mounted the other way: on the flange, or fixed beside the robot.
+    ToOtherMount,
+    /// The poses of the target, which are `target_from_sensor`, the right way round.
+    InvertTargets,
+    /// The places of the target times this factor.
+    ScaleTargets(f64),
     /// The stations from the first on report this frame; their poses become those of the flange again.
     RemoveTool {
         /// The first station concerned.
@@ -92,6 +98,18 @@ pub fn apply(session: &Session, remedy: &Remedy) -> Session {
         Remedy::ScaleProfiles(factor) => change_readings(&mut mended, |x, z| (x * factor, z * factor)),
         Remedy::MirrorProfiles(Axis::X) => change_readings(&mut mended, |x, z| (-x, z)),
         Remedy::MirrorProfiles(Axis::Z) => change_readings(&mut mended, |x, z| (x, -z)),
+        Remedy::ToOtherMount => {
+            mended.mount = match mended.mount {
+                Mount::OnFlange => Mount::Fixed,
+                Mount::Fixed => Mount::OnFlange,
+            };
+        }
+        Remedy::InvertTargets => {
+            change_targets(&mut mended, |seen| Transform::from_rigid(*seen.inverse().rigid()));
+        }
+        Remedy::ScaleTargets(factor) => {
+            change_targets(&mut mended, |seen| Transform::from_parts(seen.translation_mm() * *factor, seen.rotation()));
+        }
         Remedy::RemoveTool { from_station_idx, flange_from_tool } => {
             let tool_from_flange = flange_from_tool.inverse();
             for capture in mended.stations.iter_mut().skip(*from_station_idx).flat_map(|station| &mut station.captures)
@@ -104,11 +122,25 @@ pub fn apply(session: &Session, remedy: &Remedy) -> Session {
     mended
 }
 
+/// Maps every pose of the target.
+fn change_targets(
+    session: &mut Session,
+    map: impl Fn(&Transform<Sensor, TargetFrame>) -> Transform<Sensor, TargetFrame>,
+) {
+    for capture in session.stations.iter_mut().flat_map(|station| &mut station.captures) {
+        if let Reading::Pose(seen) = &mut capture.reading {
+            *seen = map(seen);
+        }
+    }
+}
+
 /// Maps x and z of every reading; one that would not be a profile any more stays as it was.
 fn change_readings(session: &mut Session, map: impl Fn(f64, f64) -> (f64, f64)) {
     for capture in session.stations.iter_mut().flat_map(|station| &mut station.captures) {
         match &mut capture.reading {
             Reading::Point(point) => (point.x, point.z) = map(point.x, point.z),
+            // A camera has no line to mirror or scale.
+            Reading::Pose(_) => {}
             Reading::Profile(profile) => {
                 if let Some(changed) = changed_profile(profile, &map) {
                     *profile = Arc::new(changed);

@@ -323,7 +323,7 @@ impl Gathered {
         let captures = self.stations.iter().flat_map(|station| &station.captures);
         let is_without = |reading: &Reading| match reading {
             Reading::Profile(profile) => Arc::ptr_eq(profile, &self.no_profile),
-            Reading::Point(_) => false,
+            Reading::Point(_) | Reading::Pose(_) => false,
         };
         captures.filter(|capture| is_without(&capture.reading)).count()
     }

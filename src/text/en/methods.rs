@@ -13,6 +13,7 @@ pub const fn method_name(method: Method) -> &'static str {
         Method::PlateOrthogonal => "Orthogonal edges, published",
         Method::PlateBundle => "Bundle of both edges",
         Method::FixedPoint => "Fixed point of a tip",
+        Method::Motion => "Motions of a target",
     }
 }
 
@@ -27,6 +28,7 @@ pub const fn method_short_name(method: Method) -> &'static str {
         Method::PlateOrthogonal => "orthogonal",
         Method::PlateBundle => "plate bundle",
         Method::FixedPoint => "tip",
+        Method::Motion => "motion",
     }
 }
 
@@ -45,6 +47,9 @@ pub const fn method_description(method: Method) -> &'static str {
         }
         Method::PlateBundle => "All edge points on two lines that meet at a right angle: the answer to use",
         Method::FixedPoint => "A tip touched by the laser line from several poses stays where it is",
+        Method::Motion => {
+            "The flange's motions against the target's (A X = X B), weighed by the noise of both: the answer to use"
+        }
     }
 }
 

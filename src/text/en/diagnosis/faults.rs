@@ -77,6 +77,9 @@ const fn warning_title(warning: &Warning) -> &'static str {
         Warning::RadiusDisagrees { .. } => "Wrong ball radius",
         Warning::StepDiffersFromPose { .. } => "Steps differ from poses",
         Warning::StationStandsOut { .. } => "Station stands out",
+        Warning::PoseRejected { .. } => "Pose left out",
+        Warning::StreamInverted { .. } => "Inverted poses",
+        Warning::TargetScale { .. } => "Wrong size of the target",
         Warning::NotConverged { .. } => "Solver did not settle",
     }
 }

@@ -333,6 +333,10 @@ pub const fn references(target: &Target) -> &'static [&'static str] {
             CHEN,
             "The bundle of both edges and the uncertainty are Handeye's own: docs/plate.md, docs/uncertainty.md.",
         ],
+        Target::Pose { .. } => &[
+            "Closed forms: Tsai & Lenz 1989; Park & Martin 1994; Horaud & Dornaika 1995; Daniilidis 1999; Andreff, Horaud & Espiau 2001; Li, Wang & Wu 2010; Shah 2013.",
+            "The refined answer and its uncertainty are Handeye's own: docs/motion.md, docs/uncertainty.md.",
+        ],
         Target::Rgbd { .. } => &[],
     }
 }

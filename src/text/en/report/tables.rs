@@ -30,6 +30,9 @@ pub const fn errors_legend(target: &Target) -> [&'static str; 2] {
         Target::Point => {
             "max: largest coordinate relative to the first station · RMS: scatter of the tip about its place, 3D"
         }
+        Target::Pose { .. } => {
+            "max: largest coordinate relative to the first station · RMS: scatter of the target's origin about its place, 3D"
+        }
         Target::Ball { .. } | Target::Workpiece | Target::Rgbd { .. } => {
             "max: largest coordinate relative to the first station · RMS: scatter of the ball about its place, 3D"
         }
@@ -95,6 +98,7 @@ const fn seen(method: Method) -> &'static str {
     match method {
         Method::PlateOrthogonal | Method::PlateBundle => "edge point",
         Method::FixedPoint => "tip",
+        Method::Motion => "target",
         Method::BallFixedPoint | Method::BallMaxArcStep | Method::BallMaxArc | Method::BallBundle => "ball",
     }
 }
