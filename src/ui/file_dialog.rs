@@ -7,8 +7,8 @@ use std::time::{Duration, Instant};
 
 use crate::app::jobs::Wake;
 use crate::text::{
-    capture as capture_words, import as import_words, report_panel as report_words, shell as words,
-    tool_frame as tool_frame_words, verify as verify_words, workpiece as workpiece_words,
+    capture as capture_words, import as import_words, report_panel as report_words, sequence as sequence_words,
+    shell as words, tool_frame as tool_frame_words, verify as verify_words, workpiece as workpiece_words,
 };
 
 /// Nobody cancels a dialog faster than this; so quick a "nothing chosen" means that no dialog came up.
@@ -95,7 +95,10 @@ impl Purpose {
     /// Whether a file is written, so that one that is there is replaced.
     #[must_use]
     pub const fn writes_a_file(self) -> bool {
-        matches!(self, Self::Save | Self::ExportPoses | Self::ExportPoints | Self::ToolFrame | Self::Picture | Self::SequenceFile)
+        matches!(
+            self,
+            Self::Save | Self::ExportPoses | Self::ExportPoints | Self::ToolFrame | Self::Picture | Self::SequenceFile
+        )
     }
 }
 
@@ -184,7 +187,9 @@ fn ask(purpose: Purpose, suggested_name: &str) -> Answer {
             all(dialog).pick_file().map(one)
         }
         Purpose::Calibration => all(dialog).pick_file().map(one),
-        Purpose::ToolFrame | Purpose::Picture | Purpose::SequenceFile => all(dialog).set_file_name(suggested_name).save_file().map(one),
+        Purpose::ToolFrame | Purpose::Picture | Purpose::SequenceFile => {
+            all(dialog).set_file_name(suggested_name).save_file().map(one)
+        }
         Purpose::ImportFolder | Purpose::ExportProfiles | Purpose::WatchedFolder | Purpose::ReportFolder => {
             dialog.pick_folder().map(one)
         }

@@ -9,7 +9,7 @@ use crate::app::jobs::{JobOutcome, JobWatch, Slot, Wake};
 use crate::odometry::align::aligned;
 use crate::odometry::{DepthImage, Estimator, Evaluation, Match, OdometryOptions, RgbdFrame};
 use crate::session::sequence::{FrameError, FrameRecord, Sequence, SequenceRun};
-use crate::session::{Session, Target, measure};
+use crate::session::{Session, measure};
 use crate::text::sequence as words;
 use crate::watch::{Cancelled, Watch};
 
@@ -286,4 +286,9 @@ fn track(
     let tracked = Arc::new(Tracked { key, sequence, records: run.records().to_vec(), evaluation });
     tell(News::Done(Arc::clone(&tracked)));
     Ok(Ok(tracked))
+}
+
+/// The hand-eye calibration from the motions of a sequence whose camera is on a robot; why there is none, in words.
+fn hand_eye(_session: &Session, tracked: &Tracked) -> Result<crate::calibrate::Problem, String> {
+    Err(if tracked.sequence.flange.is_some() { "later".to_owned() } else { words::NO_FLANGE.to_owned() })
 }

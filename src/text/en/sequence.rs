@@ -46,7 +46,8 @@ pub const MATCHES: &str = "Matches";
 /// What a tab shows.
 pub const COLOR_HINT: &str = "The colour image";
 /// What a tab shows.
-pub const DEPTH_HINT: &str = "The depth image as the depth camera saw it: near is red, far is blue, black was not measured";
+pub const DEPTH_HINT: &str =
+    "The depth image as the depth camera saw it: near is red, far is blue, black was not measured";
 /// What a tab shows.
 pub const ALIGNED_HINT: &str =
     "Depth carried over to the pixels of the colour image: edges of both must lie on each other";
@@ -185,7 +186,9 @@ pub const fn estimator(estimator: Estimator) -> &'static str {
 #[must_use]
 pub const fn estimator_hint(estimator: Estimator) -> &'static str {
     match estimator {
-        Estimator::Ours => "Points are tracked from keyframes, and the motion is that which puts them where they are seen",
+        Estimator::Ours => {
+            "Points are tracked from keyframes, and the motion is that which puts them where they are seen"
+        }
         Estimator::Published => {
             "CN102692236: points are matched by what they look like, and the motion is that of the best three pairs in space"
         }
@@ -232,3 +235,7 @@ pub fn summary(with_pose: usize, num_frames: usize, travel: Option<[f64; 2]>, er
     }
     parts.join(" · ")
 }
+
+/// Why a sequence gives no calibration.
+pub const NO_FLANGE: &str =
+    "The sequence has no flange.txt with the robot's poses: its motion is known, but not how the camera is mounted";

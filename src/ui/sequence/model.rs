@@ -2,7 +2,8 @@
 
 use crate::app::workbench::sequence::{SeenFrame, SequenceBench};
 use crate::geometry::{Sensor, Transform, Vec3, World};
-use crate::odometry::{Odometer, Tracking};
+use crate::odometry::Tracking;
+use crate::odometry::trajectory::Odometer;
 use crate::session::sequence::Sequence;
 
 use super::trajectory::{CameraPose, Ways};

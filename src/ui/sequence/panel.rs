@@ -8,8 +8,8 @@ use egui::{Align, ColorImage, ComboBox, DragValue, Layout, Rect, Role, Ui, UiBui
 use crate::app::workbench::sequence::{FramePictures, SequenceBench, SequenceCommand, TrackOptions};
 use crate::app::{Command, Workbench};
 use crate::odometry::{DepthImage, Estimator};
-use crate::session::sequence::{Sequence, trajectory, trajectory_text};
 use crate::report::odometry_file::frames_csv;
+use crate::session::sequence::{Sequence, trajectory, trajectory_text};
 use crate::text::odometry::{failure_message, tracking_word};
 use crate::text::sequence as words;
 use crate::ui::file_dialog::Purpose;
@@ -174,8 +174,8 @@ fn cards(
     let upper = ((area.height() - theme::GAP) * UPPER_PART).round();
     let half = (area.width() - theme::GAP) / 2.0;
     let place = |right: bool, lower: bool| {
-        let min = area.min
-            + vec2(if right { half + theme::GAP } else { 0.0 }, if lower { upper + theme::GAP } else { 0.0 });
+        let min =
+            area.min + vec2(if right { half + theme::GAP } else { 0.0 }, if lower { upper + theme::GAP } else { 0.0 });
         let height = if lower { area.height() - upper - theme::GAP } else { upper };
         Rect::from_min_size(min, vec2(half, height))
     };
@@ -199,23 +199,29 @@ fn player_card(
     state: &mut SequenceState,
 ) {
     const OPTIONS_WIDTH: f32 = 330.0;
-    widgets::card_with_height(ui, "", PLAYER_HEIGHT, |_| {}, |ui| {
-        egui::Frame::new().inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
-            ui.spacing_mut().item_spacing = vec2(6.0, 4.0);
-            ui.horizontal(|ui| {
-                ui.set_min_height(28.0);
-                let width = (ui.available_width() - OPTIONS_WIDTH).max(160.0);
-                state.player.show(ui, &model.times_s, width);
-                ui.with_layout(Layout::right_to_left(Align::Center), |ui| options(ui, context, state));
-            });
-            ui.horizontal(|ui| {
-                ui.label(frame_sentence(context.workbench.sequence(), sequence, model, state.player.frame_idx));
-                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    summary(ui, context.workbench, sequence);
+    widgets::card_with_height(
+        ui,
+        "",
+        PLAYER_HEIGHT,
+        |_| {},
+        |ui| {
+            egui::Frame::new().inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
+                ui.spacing_mut().item_spacing = vec2(6.0, 4.0);
+                ui.horizontal(|ui| {
+                    ui.set_min_height(28.0);
+                    let width = (ui.available_width() - OPTIONS_WIDTH).max(160.0);
+                    state.player.show(ui, &model.times_s, width);
+                    ui.with_layout(Layout::right_to_left(Align::Center), |ui| options(ui, context, state));
+                });
+                ui.horizontal(|ui| {
+                    ui.label(frame_sentence(context.workbench.sequence(), sequence, model, state.player.frame_idx));
+                    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                        summary(ui, context.workbench, sequence);
+                    });
                 });
             });
-        });
-    });
+        },
+    );
 }
 
 /// How the sequence is tracked, and the button for what waits to be done; from right to left.
@@ -237,22 +243,23 @@ fn options(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut SequenceStat
         }
     }
     let mut period_s = options.period_s.unwrap_or(0.0);
-    let field = ui.add(
-        DragValue::new(&mut period_s).range(PERIODS_S).speed(0.01).max_decimals(3).custom_formatter(|value, _| {
+    let field = ui.add(DragValue::new(&mut period_s).range(PERIODS_S).speed(0.01).max_decimals(3).custom_formatter(
+        |value, _| {
             if value > 0.0 { words::seconds(&widgets::fixed(value, 2)) } else { words::EVERY_FRAME.to_owned() }
-        }),
-    );
+        },
+    ));
     field.widget_info(|| WidgetInfo::drag_value(true, period_s));
     let field = field.on_hover_text(words::PERIOD_HINT);
     options.period_s = Some(period_s).filter(|period_s| *period_s > 0.0);
     let label = ui.label(theme::dim(ui, words::PERIOD));
     field.labelled_by(label.id);
-    let combo = ComboBox::from_id_salt("estimator").selected_text(words::estimator(options.estimator)).show_ui(ui, |ui| {
-        for estimator in [Estimator::Ours, Estimator::Published] {
-            ui.selectable_value(&mut options.estimator, estimator, words::estimator(estimator))
-                .on_hover_text(words::estimator_hint(estimator));
-        }
-    });
+    let combo =
+        ComboBox::from_id_salt("estimator").selected_text(words::estimator(options.estimator)).show_ui(ui, |ui| {
+            for estimator in [Estimator::Ours, Estimator::Published] {
+                ui.selectable_value(&mut options.estimator, estimator, words::estimator(estimator))
+                    .on_hover_text(words::estimator_hint(estimator));
+            }
+        });
     combo.response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::ComboBox, true, words::ESTIMATOR);
         info.current_text_value = Some(words::estimator(options.estimator).to_owned());
@@ -292,7 +299,7 @@ fn summary(ui: &mut Ui, workbench: &Workbench, sequence: &Sequence) {
         return;
     };
     ui.menu_button(words::SAVE, |ui| {
-        let mut save = |ui: &mut Ui, label: &str, name: &str, contents: &dyn Fn() -> String| {
+        let save = |ui: &mut Ui, label: &str, name: &str, contents: &dyn Fn() -> String| {
             if ui.button(label).clicked() {
                 let contents = contents().into_bytes().into();
                 save_file::ask(ui.ctx(), SaveFile { purpose: Purpose::SequenceFile, name: name.to_owned(), contents });
@@ -343,12 +350,14 @@ fn picture_card(ui: &mut Ui, height: f32, sequence: &Sequence, bench: &SequenceB
         let seen = bench.seen().get(pictures.frame_idx);
         let features: &[Pixel] = seen.map_or(&[], |seen| &seen.features);
         let ways: Vec<Way> = seen.map_or_else(Vec::new, |seen| {
-            let way = |found: &crate::odometry::Match| Way { from: found.before, to: found.now, is_inlier: found.is_inlier };
+            let way =
+                |found: &crate::odometry::Match| Way { from: found.before, to: found.now, is_inlier: found.is_inlier };
             seen.matches.iter().map(way).collect()
         });
         let of = state.shown;
         let color = || {
-            let [width, height] = [frame.color.width(), frame.color.height()].map(|side| usize::try_from(side).unwrap_or(0));
+            let [width, height] =
+                [frame.color.width(), frame.color.height()].map(|side| usize::try_from(side).unwrap_or(0));
             ColorImage::from_rgb([width, height], frame.color.as_raw())
         };
         let image = || match (of, distances.as_deref()) {
@@ -406,10 +415,23 @@ fn travel_card(ui: &mut Ui, height: f32, model: &Model, state: &mut SequenceStat
         }
         curves
     };
-    two_curves(ui, height, words::TRAVEL, model, state, [
-        ("sequence distance", words::DISTANCE_AXIS, 3, with_truth(&model.distance_m, &model.true_distance_m), true),
-        ("sequence heading", words::HEADING_AXIS, 2, with_truth(&model.heading_deg, &model.true_heading_deg), false),
-    ]);
+    two_curves(
+        ui,
+        height,
+        words::TRAVEL,
+        model,
+        state,
+        [
+            ("sequence distance", words::DISTANCE_AXIS, 3, with_truth(&model.distance_m, &model.true_distance_m), true),
+            (
+                "sequence heading",
+                words::HEADING_AXIS,
+                2,
+                with_truth(&model.heading_deg, &model.true_heading_deg),
+                false,
+            ),
+        ],
+    );
 }
 
 fn effort_card(ui: &mut Ui, height: f32, model: &Model, state: &mut SequenceState) {
@@ -420,10 +442,17 @@ fn effort_card(ui: &mut Ui, height: f32, model: &Model, state: &mut SequenceStat
         curve(words::AGREEING, theme::INLIER, &model.inliers),
     ];
     let times = vec![curve(words::MOTION_TIME, palette.accent, &model.motion_ms)];
-    two_curves(ui, height, words::EFFORT, model, state, [
-        ("sequence features", words::FEATURES_AXIS, 0, counts, true),
-        ("sequence time", words::DURATION_AXIS, 1, times, true),
-    ]);
+    two_curves(
+        ui,
+        height,
+        words::EFFORT,
+        model,
+        state,
+        [
+            ("sequence features", words::FEATURES_AXIS, 0, counts, true),
+            ("sequence time", words::DURATION_AXIS, 1, times, true),
+        ],
+    );
 }
 
 type Plotted<'a> = (&'static str, &'a str, usize, Vec<Curve>, bool);
@@ -438,23 +467,30 @@ fn two_curves(
     plotted: [Plotted<'_>; 2],
 ) {
     let current_s = model.times_s.get(state.player.frame_idx).copied();
-    let clicked = widgets::card_with_height(ui, title, height, |_| {}, |ui| {
-        if model.times_s.is_empty() {
-            widgets::nothing(ui, words::NO_WAY);
-            return None;
-        }
-        saveable(ui, title, |ui| {
-            ui.spacing_mut().item_spacing.y = 0.0;
-            let half = ui.available_height() / 2.0;
-            let mut clicked_s = None;
-            for (idx, (id, y_title, decimals, curves, is_from_zero)) in plotted.into_iter().enumerate() {
-                let plot = OverTime { id, y_title, decimals, curves, lost_s: &model.lost_s, current_s, is_from_zero };
-                let found = plot.show(ui, half, idx == 0, &mut state.are_curves_fitted);
-                clicked_s = clicked_s.or(found);
+    let clicked = widgets::card_with_height(
+        ui,
+        title,
+        height,
+        |_| {},
+        |ui| {
+            if model.times_s.is_empty() {
+                widgets::nothing(ui, words::NO_WAY);
+                return None;
             }
-            clicked_s
-        })
-    });
+            saveable(ui, title, |ui| {
+                ui.spacing_mut().item_spacing.y = 0.0;
+                let half = ui.available_height() / 2.0;
+                let mut clicked_s = None;
+                for (idx, (id, y_title, decimals, curves, is_from_zero)) in plotted.into_iter().enumerate() {
+                    let plot =
+                        OverTime { id, y_title, decimals, curves, lost_s: &model.lost_s, current_s, is_from_zero };
+                    let found = plot.show(ui, half, idx == 0, &mut state.are_curves_fitted);
+                    clicked_s = clicked_s.or(found);
+                }
+                clicked_s
+            })
+        },
+    );
     if let Some(frame_idx) = clicked.and_then(|time_s| model.frame_at(time_s)) {
         state.player.go_to(frame_idx);
     }

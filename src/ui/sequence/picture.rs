@@ -203,7 +203,11 @@ impl Picture {
         match scene.shown {
             Shown::Features => {
                 for feature in scene.features {
-                    painter.circle_stroke(at(*feature), FEATURE_RADIUS + 1.0, Stroke::new(2.5, Color32::from_black_alpha(120)));
+                    painter.circle_stroke(
+                        at(*feature),
+                        FEATURE_RADIUS + 1.0,
+                        Stroke::new(2.5, Color32::from_black_alpha(120)),
+                    );
                     painter.circle_stroke(at(*feature), FEATURE_RADIUS + 1.0, Stroke::new(1.2, FEATURE));
                 }
             }
@@ -225,9 +229,10 @@ impl Picture {
         let Some(pointer) = response.hover_pos().filter(|pointer| rect.contains(*pointer)) else { return };
         ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
         let [column, row] = [(pointer.x - rect.left()) / zoom, (pointer.y - rect.top()) / zoom].map(whole);
-        let z_mm = scene.distances.filter(|distances| distances.width == image.width()).map(|distances| {
-            distances.z_mm.get(row * distances.width + column).copied().filter(|z_mm| *z_mm > 0.0)
-        });
+        let z_mm = scene
+            .distances
+            .filter(|distances| distances.width == image.width())
+            .map(|distances| distances.z_mm.get(row * distances.width + column).copied().filter(|z_mm| *z_mm > 0.0));
         let distance = z_mm.map(|z_mm| z_mm.map(|z_mm| widgets::fixed(f64::from(z_mm) / 1000.0, 3)));
         let note = words::pixel_readout(column, row, distance.as_ref().map(Option::as_deref));
         let font = egui::FontId::proportional(theme::SMALL_SIZE);

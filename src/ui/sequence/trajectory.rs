@@ -1,6 +1,8 @@
 //! The way of the camera against the truth: in plan with axes, and in space.
 
-use egui::{Align2, Color32, FontId, Id, Key, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, vec2};
+use egui::{
+    Align2, Color32, FontId, Id, Key, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, vec2,
+};
 use egui_plot::MarkerShape;
 
 use crate::geometry::Vec3;
@@ -62,11 +64,8 @@ fn upright(point: Vec3) -> Vec3 {
 }
 
 fn legend(ui: &mut Ui, ways: &Ways) {
-    let mut entries = vec![LegendEntry {
-        glyph: LegendGlyph::Line,
-        color: theme::INLIER,
-        text: words::TRACKED_WAY.to_owned(),
-    }];
+    let mut entries =
+        vec![LegendEntry { glyph: LegendGlyph::Line, color: theme::INLIER, text: words::TRACKED_WAY.to_owned() }];
     if !ways.truth.is_empty() {
         let color = theme::palette(ui).text_dim;
         entries.push(LegendEntry { glyph: LegendGlyph::Dashed, color, text: words::TRUE_WAY.to_owned() });

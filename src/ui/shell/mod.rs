@@ -19,7 +19,6 @@ use crate::text::shell as words;
 use self::live_cell::CellWatch;
 use super::actions::{self, Action};
 use super::arcs::ArcsState;
-use super::sequence::SequenceState;
 use super::capture::CaptureState;
 use super::compare::CompareState;
 use super::diagnosis::DiagnosisState;
@@ -33,11 +32,12 @@ use super::rail::{self, Step};
 use super::report::ReportState;
 use super::save_file::{self, SaveFile};
 use super::save_picture::{self, Drawn};
+use super::sequence::SequenceState;
 use super::start::panel::StartState;
 use super::verify::VerifyState;
 use super::{
-    PanelContext, Selection, arcs, capture, compare, diagnosis, inspector, poses, report, start, status, theme,
-    top_bar, verify, widgets,
+    PanelContext, Selection, arcs, capture, compare, diagnosis, inspector, poses, report, sequence, start, status,
+    theme, top_bar, verify, widgets,
 };
 
 /// Height of the bar at the top, points.
