@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use nalgebra::{Quaternion, UnitQuaternion};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::geometry::notation::QUATERNION_NORM_TOLERANCE;
 use crate::geometry::{Transform, Vec3};
@@ -43,6 +43,24 @@ pub(super) fn read(path: &Path) -> Result<RgbdCamera, SequenceError> {
         })?,
     };
     Ok(RgbdCamera { color, depth, color_from_depth, depth_units_per_m })
+}
+
+/// The camera as a file.
+pub(super) fn written(camera: &RgbdCamera) -> Value {
+    let intrinsics = |of: &Intrinsics| {
+        json!({
+            "width": of.width, "height": of.height, "fx": of.fx, "fy": of.fy, "cx": of.cx, "cy": of.cy,
+        })
+    };
+    json!({
+        "color": intrinsics(&camera.color),
+        "depth": intrinsics(&camera.depth),
+        "color_from_depth": {
+            "translation_mm": camera.color_from_depth.translation_mm().as_slice(),
+            "quaternion_wxyz": camera.color_from_depth.quaternion_wxyz(),
+        },
+        "depth_scale": camera.depth_units_per_m,
+    })
 }
 
 struct Reader<'a> {

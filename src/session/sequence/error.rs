@@ -26,6 +26,14 @@ pub enum SequenceError {
         /// What it is needed for.
         needed: &'static str,
     },
+    /// The operating system did not let us write a file.
+    #[error("cannot write {}: {problem}", file.display())]
+    Unwritable {
+        /// The file.
+        file: PathBuf,
+        /// The system's words.
+        problem: String,
+    },
     /// The camera's file is not as it should be.
     #[error("{}: {place}: found {found}, needed {needed}", file.display())]
     Camera {

@@ -17,7 +17,7 @@ use crate::odometry::{RgbdCamera, RgbdFrame, TimedPose};
 
 pub use error::{FrameError, SequenceError, SequenceNote};
 pub use run::{FrameRecord, FrameSummary, Looked, SequenceRun, trajectory};
-pub use write::trajectory_text;
+pub use write::{SequenceWriter, trajectory_text};
 
 /// The camera's file.
 pub const CAMERA_FILE: &str = "camera.json";
