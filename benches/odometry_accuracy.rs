@@ -1,6 +1,6 @@
 //! How near the camera's motion comes to the truth in simulated rooms: `cargo bench --bench odometry_accuracy`.
 //!
-//! Prints the tables of `docs/room.md`. Seeds are fixed, so anyone gets the same errors; times are this machine's.
+//! Prints tables as in `docs/room.md`. Seeds are fixed, so anyone gets the same errors; times are this machine's.
 #![allow(clippy::expect_used, reason = "a benchmark that cannot run must stop")]
 
 use std::time::Instant;
