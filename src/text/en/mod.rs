@@ -20,6 +20,7 @@ pub mod import;
 pub mod import_bag;
 pub mod import_cli;
 pub mod methods;
+pub mod odometry;
 pub mod poses;
 pub mod report;
 pub mod report_cli;
