@@ -140,7 +140,8 @@ fn folders_without_a_frame_are_refused_by_name() {
         (
             "no numbers",
             |walk| {
-                fs::write(walk.join("associations.txt"), "NaN rgb/0000.png NaN depth/0000.png\nx\n").expect("written")
+                fs::write(walk.join("associations.txt"), "NaN rgb/0.000000.png NaN depth/0.000000.png\nx\n")
+                    .expect("written")
             },
             &["associations.txt", "line 1", "NaN"],
         ),
@@ -159,45 +160,49 @@ fn folders_without_a_frame_are_refused_by_name() {
 #[test]
 fn a_frame_whose_pictures_are_broken_is_named_and_the_others_are_used() {
     const DAMAGES: [Damage; 7] = [
-        ("missing", |walk| fs::remove_file(walk.join("rgb/0002.png")).expect("removed"), &["0002.png", "cannot read"]),
+        (
+            "missing",
+            |walk| fs::remove_file(walk.join("rgb/0.066667.png")).expect("removed"),
+            &["0.066667.png", "cannot read"],
+        ),
         (
             "truncated",
             |walk| {
-                let path = walk.join("depth/0002.png");
+                let path = walk.join("depth/0.066667.png");
                 let bytes = fs::read(&path).expect("readable");
                 fs::write(&path, &bytes[..bytes.len() / 2]).expect("written");
             },
-            &["0002.png", "cannot be decoded"],
+            &["0.066667.png", "cannot be decoded"],
         ),
         (
             "empty",
-            |walk| fs::write(walk.join("rgb/0002.png"), "").expect("written"),
-            &["0002.png", "cannot be decoded"],
+            |walk| fs::write(walk.join("rgb/0.066667.png"), "").expect("written"),
+            &["0.066667.png", "cannot be decoded"],
         ),
-        ("no picture", |walk| fs::write(walk.join("rgb/0002.png"), "hello").expect("written"), &["0002.png"]),
+        ("no picture", |walk| fs::write(walk.join("rgb/0.066667.png"), "hello").expect("written"), &["0.066667.png"]),
         (
             "depth as colour",
             |walk| {
-                fs::copy(walk.join("rgb/0002.png"), walk.join("depth/0002.png")).expect("copied");
+                fs::copy(walk.join("rgb/0.066667.png"), walk.join("depth/0.066667.png")).expect("copied");
             },
-            &["depth", "0002.png", "16 bits"],
+            &["depth", "0.066667.png", "16 bits"],
         ),
         (
             "another size",
-            |walk| image::RgbImage::new(80, 60).save(walk.join("rgb/0002.png")).expect("written"),
-            &["0002.png", "80 × 60", "160 × 120"],
+            |walk| image::RgbImage::new(80, 60).save(walk.join("rgb/0.066667.png")).expect("written"),
+            &["0.066667.png", "80 × 60", "160 × 120"],
         ),
         (
             "a header that promises gigabytes",
             |walk| {
-                let path = walk.join("rgb/0002.png");
+                let path = walk.join("rgb/0.066667.png");
                 let mut bytes = fs::read(&path).expect("readable");
                 // Width and height of the header, then its checksum.
                 bytes[16..24].copy_from_slice(&[0, 1, 0, 0, 0, 1, 0, 0]);
                 bytes[29..33].copy_from_slice(&crc32(&bytes[12..29]).to_be_bytes());
                 fs::write(&path, bytes).expect("written");
             },
-            &["0002.png", "65536 × 65536"],
+            &["0.066667.png", "65536 × 65536"],
         ),
     ];
     for (name, damage, said) in DAMAGES {
@@ -228,8 +233,8 @@ fn lines_that_are_odd_are_noted_and_the_others_are_used() {
         let double = lines[0];
         lines.extend([
             double,
-            "1.0 ../../etc/passwd 1.0 depth/0001.png",
-            "1e300 rgb/0001.png 1e300 depth/0001.png",
+            "1.0 ../../etc/passwd 1.0 depth/0.033333.png",
+            "1e300 rgb/0.033333.png 1e300 depth/0.033333.png",
             "\u{7} x",
         ]);
         lines.join("\r\n")
@@ -252,9 +257,8 @@ fn colour_and_depth_are_paired_by_time_where_no_list_does() {
     fs::remove_file(walk.join("associations.txt")).expect("removed");
     // Depth comes 5 ms late, and once not at all.
     let times = [0.0, 0.033_333, 0.066_667, 0.133_333];
-    let line =
-        |(idx, time): (usize, &f64)| format!("{:.6} depth/{:04}.png\n", time + 0.005, if idx == 3 { 4 } else { idx });
-    fs::write(walk.join("depth.txt"), times.iter().enumerate().map(line).collect::<String>()).expect("written");
+    let line = |(idx, time): (usize, &f64)| format!("{:.6} depth/{time:.6}.png\n", time + 0.005);
+    fs::write(walk.join("depth.txt"), times.iter().map(line).collect::<String>()).expect("written");
     let sequence = Sequence::open(&walk).expect("a folder with frames");
     assert_eq!(sequence.frames.len(), 4);
     assert!(

@@ -267,7 +267,7 @@ impl Current {
         let keyframe_from_previous = self.sensor_from_keyframe.inverse();
         let sensor_from_previous = estimate.sensor_from_reference * keyframe_from_previous;
         // A perturbation of the keyframe's side, as the frame before sees it.
-        let by_previous = adjoint(&self.sensor_from_keyframe);
+        let by_previous = se3::adjoint(&self.sensor_from_keyframe);
         let covariance = by_previous * (estimate.covariance + self.covariance) * by_previous.transpose();
         let elapsed_s = time_s - self.time_s;
         self.velocity = (elapsed_s > 0.0 && !is_recognised).then(|| se3::log(&sensor_from_previous) / elapsed_s);
@@ -282,15 +282,4 @@ fn is_enough(estimate: &Estimate) -> bool {
     #[expect(clippy::cast_precision_loss, reason = "numbers of points")]
     let part = estimate.num_inliers() as f64 / estimate.is_inlier.len().max(1) as f64;
     estimate.num_inliers() >= MIN_INLIERS && part >= LEAST_AGREEING
-}
-
-/// How a perturbation of `Src` looks in `Dst`: `dst_from_src exp(δ) = exp(adjoint δ) dst_from_src`.
-fn adjoint(dst_from_src: &Rigid) -> Matrix6<f64> {
-    let rotation = dst_from_src.rotation.to_rotation_matrix().into_inner();
-    let mut adjoint = Matrix6::zeros();
-    adjoint.fixed_view_mut::<3, 3>(0, 0).copy_from(&rotation);
-    adjoint.fixed_view_mut::<3, 3>(3, 3).copy_from(&rotation);
-    let moved = crate::geometry::so3::hat(dst_from_src.translation.vector) * rotation;
-    adjoint.fixed_view_mut::<3, 3>(3, 0).copy_from(&moved);
-    adjoint
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix6;
 
-use crate::geometry::{Rigid, Sensor, Transform, World};
+use crate::geometry::{Rigid, Sensor, Transform, World, se3};
 
 use super::trajectory::Travel;
 
@@ -69,6 +69,15 @@ pub struct Motion {
     pub residual_px: f64,
     /// Whether the place was recognised by what it looks like, as it could not be followed.
     pub is_recognised: bool,
+}
+
+impl Motion {
+    /// The covariance along the axes of the camera at this frame: of a perturbation from the left.
+    #[must_use]
+    pub fn covariance_in_sensor(&self) -> Matrix6<f64> {
+        let by_sensor = se3::adjoint(&self.sensor_from_previous);
+        by_sensor * self.covariance * by_sensor.transpose()
+    }
 }
 
 /// Why the motion of a frame is not known.

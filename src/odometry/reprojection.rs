@@ -330,6 +330,8 @@ mod tests {
             .into_iter()
             .map(|sighting| Sighting { point_mm: -sighting.point_mm, ..sighting })
             .collect();
-        assert_eq!(estimate(&camera(), &behind, Some(Rigid::identity()), &SEARCH), None);
+        // A half turn brings them before the camera, but hardly one to where it was seen.
+        let found = estimate(&camera(), &behind, Some(Rigid::identity()), &SEARCH);
+        assert!(found.is_none_or(|found| found.num_inliers() < 10));
     }
 }

@@ -54,7 +54,7 @@ pub fn plan_file(session: &Session, plan: &Plan, method: Option<Method>) -> Valu
     })
 }
 
-fn method_entry(session: &Session, result: &MethodResult, diagnosis: Option<&Diagnosis>) -> Value {
+pub(super) fn method_entry(session: &Session, result: &MethodResult, diagnosis: Option<&Diagnosis>) -> Value {
     match &result.outcome {
         Ok(solution) => solution_entry(session, solution, diagnosis),
         Err(error) => json!({
