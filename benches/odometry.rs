@@ -42,10 +42,8 @@ fn accuracy(recordings: &[(RoomOptions, Vec<RgbdFrame>, Vec<TimedPose>)]) {
                 .filter_map(|frame| {
                     let outcome = odometry.push(frame);
                     let is_tracked = matches!(outcome.tracking, Tracking::Started { .. } | Tracking::Tracked(_));
-                    is_tracked.then_some(TimedPose {
-                        time_s: outcome.time_s,
-                        world_from_sensor: outcome.world_from_sensor?,
-                    })
+                    is_tracked
+                        .then_some(TimedPose { time_s: outcome.time_s, world_from_sensor: outcome.world_from_sensor? })
                 })
                 .collect();
             let Some(error) = evaluate(truth, &poses) else { continue };

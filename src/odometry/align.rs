@@ -98,7 +98,7 @@ impl Projection {
             let (u, v, scale) = (x * per_z, y * per_z, d * per_z);
             let (half_u, half_v) = (hx * scale, hy * scale);
             // Of no depth, or behind the camera, no pixel is covered.
-            let is_seen = (d > 0.0) & (z > 0.0);
+            let is_seen = d > 0.0 && z > 0.0;
             spot_z[idx] = rounded(if is_seen { within(z, 65_535.0) } else { 0.0 });
             left[idx] = rounded(within(u - half_u, last_x) + 0.499_99);
             right[idx] = rounded(within(u + half_u, last_x) - 0.499_99);

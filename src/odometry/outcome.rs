@@ -80,6 +80,30 @@ impl Motion {
     }
 }
 
+/// What an estimator makes of a frame.
+#[derive(Clone, Debug)]
+pub struct Estimated {
+    /// Corners of this frame.
+    pub features: Vec<[f32; 2]>,
+    /// Points of an earlier frame seen again.
+    pub matches: Vec<Match>,
+    /// The motion; none for a frame to start with.
+    pub motion: Result<Option<EstimatedMotion>, Failure>,
+}
+
+/// The motion since the last frame that was tracked, as an estimator has it.
+#[derive(Clone, Debug)]
+pub struct EstimatedMotion {
+    /// As in [`Motion`].
+    pub sensor_from_previous: Rigid,
+    /// As in [`Motion`].
+    pub covariance: Matrix6<f64>,
+    /// As in [`Motion`].
+    pub residual_px: f64,
+    /// As in [`Motion`].
+    pub is_recognised: bool,
+}
+
 /// Why the motion of a frame is not known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Failure {
