@@ -73,6 +73,12 @@ impl Method {
         }
     }
 
+    /// Whether its target may be on either side of the sensor's plane, and the side is part of what was found.
+    #[must_use]
+    pub const fn has_sides(self) -> bool {
+        !matches!(self, Self::FixedPoint | Self::Motion)
+    }
+
     /// The method with this name.
     #[must_use]
     pub fn by_id(id: &str) -> Option<Self> {

@@ -181,6 +181,8 @@ pub enum Warning {
         /// Its standard deviation.
         std: f64,
     },
+    /// The data do not tell by how much the clocks of robot and camera differ.
+    TimeOffsetUnknown,
     /// The solver stopped before it settled.
     NotConverged {
         /// Iterations made.
@@ -211,6 +213,7 @@ impl Warning {
             Self::PoseRejected { .. } => "pose-rejected",
             Self::StreamInverted { .. } => "stream-inverted",
             Self::TargetScale { .. } => "target-scale",
+            Self::TimeOffsetUnknown => "time-offset-unknown",
             Self::NotConverged { .. } => "not-converged",
         }
     }

@@ -4,12 +4,14 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use crate::calibrate::Noise;
 use crate::odometry::{Estimator, OdometryOptions, Tracking};
 use crate::report::odometry_file::{OdometryResult, frames_csv, odometry_file};
 use crate::session::sequence::{FrameRecord, Sequence, SequenceRun, trajectory_text};
-use crate::session::{self, Target};
-use crate::text::odometry as words;
+use crate::session::{self, Session, Target};
+use crate::text::{odometry as words, warning_message};
 
+use super::solve::six_numbers;
 use super::{EXIT_NOTHING_COMPUTED, EXIT_WRONG_INPUT, fail};
 
 /// Arguments of `handeye odometry`.
@@ -49,8 +51,8 @@ pub fn run(args: &OdometryArgs) -> ExitCode {
 type Refusal = (u8, String);
 
 fn tracked(args: &OdometryArgs) -> Result<String, Refusal> {
-    let sequence =
-        Sequence::open(&folder_of(&args.sequence)?).map_err(|error| (EXIT_WRONG_INPUT, error.to_string()))?;
+    let (folder, session) = opened(&args.sequence)?;
+    let sequence = Sequence::open(&folder).map_err(|error| (EXIT_WRONG_INPUT, error.to_string()))?;
     let name = name_of(&sequence.folder);
     let estimator = if args.published { Estimator::Published } else { Estimator::Ours };
     let options = OdometryOptions { estimator, period_s: args.every, ..OdometryOptions::default() };
@@ -58,7 +60,16 @@ fn tracked(args: &OdometryArgs) -> Result<String, Refusal> {
     while run.step(&sequence).is_some() {}
     let trajectory = run.trajectory();
     let evaluation = sequence.evaluate(&trajectory);
-    let result = OdometryResult { name: &name, estimator, records: run.records(), notes: &sequence.notes, evaluation };
+    let hand_eye = sequence.hand_eye(run.records(), session.mount, noise_of(&session));
+    let result = OdometryResult {
+        name: &name,
+        estimator,
+        records: run.records(),
+        notes: &sequence.notes,
+        evaluation,
+        session: &session,
+        hand_eye: hand_eye.as_ref(),
+    };
     if trajectory.is_empty() {
         let reason = result.troubles().next().map_or_else(String::new, |(_, _, reason)| reason);
         return Err((EXIT_NOTHING_COMPUTED, words::nothing_tracked(&name, &reason)));
@@ -85,16 +96,23 @@ fn tracked(args: &OdometryArgs) -> Result<String, Refusal> {
     Ok(text)
 }
 
-/// The folder itself, or that of a session.
-fn folder_of(path: &Path) -> Result<PathBuf, Refusal> {
+/// The folder itself, or that of a session, and what the session says of the robot.
+fn opened(path: &Path) -> Result<(PathBuf, Session), Refusal> {
     if path.is_dir() || !path.exists() {
-        return Ok(path.to_owned());
+        return Ok((path.to_owned(), Session::new(Target::Rgbd { sequence: String::new() })));
     }
     let session = session::load(path).map_err(|error| (EXIT_WRONG_INPUT, error.to_string()))?;
-    let Target::Rgbd { sequence } = session.target else {
+    let Target::Rgbd { sequence } = &session.target else {
         return Err((EXIT_WRONG_INPUT, words::not_a_sequence_session(&path.display().to_string())));
     };
-    Ok(path.parent().unwrap_or(Path::new(".")).join(sequence))
+    Ok((path.parent().unwrap_or(Path::new(".")).join(sequence), session))
+}
+
+fn noise_of(session: &Session) -> Noise {
+    Noise {
+        position_std_mm: session.robot.position_std_mm,
+        orientation_std_rad: session.robot.orientation_std_deg.map(f64::to_radians),
+    }
 }
 
 fn name_of(folder: &Path) -> String {
@@ -136,6 +154,7 @@ fn report(sequence: &Sequence, result: &OdometryResult<'_>) -> String {
         );
         writeln!(out, "{line}").ok();
     }
+    hand_eye(&mut out, result);
     out.push('\n');
     frames_table(&mut out, result.records);
     let troubles: Vec<_> = result.troubles().collect();
@@ -149,6 +168,22 @@ fn report(sequence: &Sequence, result: &OdometryResult<'_>) -> String {
         }
     }
     out
+}
+
+/// Where the camera sits on the robot.
+fn hand_eye(out: &mut String, result: &OdometryResult<'_>) {
+    let Some(found) = result.hand_eye else { return };
+    match &found.outcome {
+        Err(error) => writeln!(out, "\n{}", words::no_hand_eye(&error.to_string())).ok(),
+        Ok(solution) => {
+            writeln!(out, "\n{}", words::HAND_EYE_HEAD).ok();
+            six_numbers(out, result.session, &solution.flange_from_sensor, solution.uncertainty.as_ref());
+            if let Some(offset) = solution.motion.as_ref().and_then(|found| found.time_offset) {
+                writeln!(out, "  {}", words::time_offset(offset.offset_s, offset.std_s)).ok();
+            }
+            solution.warnings.iter().try_for_each(|warning| writeln!(out, "  {}", warning_message(warning))).ok()
+        }
+    };
 }
 
 /// Some frames, evenly over the sequence.

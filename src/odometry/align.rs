@@ -85,21 +85,25 @@ impl Projection {
             let value = if value < last + 1.0 { value } else { last + 1.0 };
             if value > -2.0 { value } else { -2.0 }
         };
-        let columns = self.of_column[0].iter().zip(&self.of_column[1]).zip(&self.of_column[2]);
-        for ((spot, depth), ((ax, ay), az)) in spots.of_row.iter_mut().zip(line).zip(columns) {
-            let d = f32::from(*depth);
-            let (x, y, z) = (d * (ax + bx) + sx, d * (ay + by) + sy, d * (az + bz) + sz);
+        // Slices of one length, so that several pixels are computed at once.
+        let num = line.len();
+        let [ax, ay, az] = [0, 1, 2].map(|axis| &self.of_column[axis][..num]);
+        let Spots { z: spot_z, left, right, top, bottom } = spots;
+        let (spot_z, left, right) = (&mut spot_z[..num], &mut left[..num], &mut right[..num]);
+        let (top, bottom) = (&mut top[..num], &mut bottom[..num]);
+        for idx in 0..num {
+            let d = f32::from(line[idx]);
+            let (x, y, z) = (d * (ax[idx] + bx) + sx, d * (ay[idx] + by) + sy, d * (az[idx] + bz) + sz);
             let per_z = 1.0 / z;
             let (u, v, scale) = (x * per_z, y * per_z, d * per_z);
             let (half_u, half_v) = (hx * scale, hy * scale);
-            *spot = Spot {
-                // Of no depth, or behind the camera, no pixel is covered.
-                z: if d > 0.0 && z > 0.0 { rounded(if z < 65_535.0 { z } else { 65_535.0 }) } else { 0 },
-                left: rounded(within(u - half_u, last_x) + 0.499_99),
-                right: rounded(within(u + half_u, last_x) - 0.499_99),
-                top: rounded(within(v - half_v, last_y) + 0.499_99),
-                bottom: rounded(within(v + half_v, last_y) - 0.499_99),
-            };
+            // Of no depth, or behind the camera, no pixel is covered.
+            let is_seen = d > 0.0 && z > 0.0;
+            spot_z[idx] = rounded(if is_seen { within(z, 65_535.0) } else { 0.0 });
+            left[idx] = rounded(within(u - half_u, last_x) + 0.499_99);
+            right[idx] = rounded(within(u + half_u, last_x) - 0.499_99);
+            top[idx] = rounded(within(v - half_v, last_y) + 0.499_99);
+            bottom[idx] = rounded(within(v + half_v, last_y) - 0.499_99);
         }
     }
 }
@@ -109,35 +113,33 @@ fn rounded(value: f32) -> i32 {
     (value + ROUNDER).to_bits().cast_signed() - ROUNDER.to_bits().cast_signed()
 }
 
-/// The colour pixels that a depth pixel covers, ends included.
-#[derive(Clone, Copy, Default)]
-struct Spot {
-    z: i32,
-    left: i32,
-    right: i32,
-    top: i32,
-    bottom: i32,
-}
-
-/// Those of a row of depth pixels.
+/// The colour pixels that the depth pixels of a row cover, ends included, and their depth there.
 struct Spots {
-    of_row: Vec<Spot>,
+    z: Vec<i32>,
+    left: Vec<i32>,
+    right: Vec<i32>,
+    top: Vec<i32>,
+    bottom: Vec<i32>,
 }
 
 impl Spots {
     fn new(width: usize) -> Self {
-        Self { of_row: vec![Spot::default(); width] }
+        let none = || vec![0; width];
+        Self { z: none(), left: none(), right: none(), top: none(), bottom: none() }
     }
 
     /// Keeps the nearest at every pixel.
     fn draw(&self, nearest: &mut DepthImage) {
         let (width, height) = (nearest.width().cast_signed(), nearest.height().cast_signed());
         let pixels: &mut [u16] = nearest;
-        for spot in &self.of_row {
+        let columns = self.left.iter().zip(&self.right);
+        let rows = self.top.iter().zip(&self.bottom);
+        for ((z, (left, right)), (top, bottom)) in self.z.iter().zip(columns).zip(rows) {
             // 65535 stands for "nothing yet" and is beyond every camera's range.
-            let Some(z) = u16::try_from(spot.z).ok().filter(|z| (1..NOTHING).contains(z)) else { continue };
-            for row in spot.top.max(0)..=spot.bottom.min(height - 1) {
-                for column in spot.left.max(0)..=spot.right.min(width - 1) {
+            let Some(z) = u16::try_from(*z).ok().filter(|z| (1..NOTHING).contains(z)) else { continue };
+            let (left, right) = ((*left).max(0), (*right).min(width - 1));
+            for row in (*top).max(0)..=(*bottom).min(height - 1) {
+                for column in left..=right {
                     let at = (row * width + column).unsigned_abs() as usize;
                     if let Some(pixel) = pixels.get_mut(at) {
                         *pixel = z.min(*pixel);

@@ -127,3 +127,66 @@ pub fn depth_at(depth: &DepthImage, [x, y]: [f64; 2], mm_per_unit: f64) -> Optio
         .fold((0.0, 0.0), |(sum, total), (value, weight)| (sum + weight * value, total + weight));
     (weight > 0.25).then(|| sum / weight * mm_per_unit)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::Luma;
+
+    /// A wall at 2 m with a box before it at 1.5 m, millimetres; one pixel has no depth.
+    fn wall_with_box() -> DepthImage {
+        DepthImage::from_fn(20, 16, |x, y| match (x, y) {
+            (15, 12) => Luma([0]),
+            (5..10, 4..9) => Luma([1500]),
+            _ => Luma([2000]),
+        })
+    }
+
+    #[test]
+    fn edges_and_what_is_out_of_range_are_left_out() {
+        let depth = wall_with_box();
+        let cleaned = DepthFilter::default().clean(&depth, 1.0);
+        // Away from the box, next to a hole, within the box: stable. On either side of its edge: not.
+        for (x, y, expected) in
+            [(0, 0, 2000), (14, 12, 2000), (7, 6, 1500), (5, 6, 0), (4, 6, 0), (10, 9, 0), (15, 12, 0)]
+        {
+            assert_eq!(cleaned.get_pixel(x, y).0[0], expected, "{x} {y}");
+        }
+        let near = DepthFilter { max_mm: 1800.0, ..DepthFilter::default() }.clean(&depth, 1.0);
+        assert_eq!((near.get_pixel(0, 0).0[0], near.get_pixel(7, 6).0[0]), (0, 1500));
+        let far = DepthFilter { min_mm: 1800.0, ..DepthFilter::default() }.clean(&depth, 1.0);
+        assert_eq!((far.get_pixel(0, 0).0[0], far.get_pixel(7, 6).0[0]), (2000, 0));
+        // In fifths of a millimetre the same wall is at 0.4 m.
+        let fifths = DepthFilter { min_mm: 350.0, ..DepthFilter::default() }.clean(&depth, 0.2);
+        assert_eq!((fifths.get_pixel(0, 0).0[0], fifths.get_pixel(7, 6).0[0]), (2000, 0));
+        assert_eq!(DepthFilter::default().clean(&DepthImage::new(0, 0), 1.0), DepthImage::new(0, 0));
+    }
+
+    #[test]
+    fn a_slanted_wall_is_stable() {
+        // 20 mm a pixel at 2 m is a wall seen at 80° from its normal by a camera of 570 px.
+        let slanted = DepthImage::from_fn(30, 4, |x, _| Luma([u16::try_from(2000 + 20 * x).unwrap_or(0)]));
+        assert_eq!(DepthFilter::default().clean(&slanted, 1.0), slanted);
+    }
+
+    #[test]
+    fn depth_is_read_between_pixels() {
+        let depth = DepthImage::from_fn(3, 2, |x, y| {
+            Luma([if x == 2 { 0 } else { u16::try_from(1000 + 10 * x + 4 * y).unwrap_or(0) }])
+        });
+        assert_eq!(depth_at(&depth, [0.5, 0.5], 2.0), Some(2014.0));
+        // The one on the left alone, and nothing where it has hardly a say.
+        assert_eq!(depth_at(&depth, [1.5, 0.0], 1.0), Some(1010.0));
+        assert_eq!(depth_at(&depth, [1.9, 0.0], 1.0), None);
+        assert_eq!(depth_at(&depth, [2.1, 0.0], 1.0), None);
+        assert_eq!(depth_at(&depth, [f64::NAN, 0.0], 1.0), None);
+    }
+
+    #[test]
+    fn flicker_is_told_from_noise() {
+        let noise = DepthNoise::KINECT;
+        assert!((noise.std_mm(2000.0) - 6.2).abs() < 0.1);
+        assert!(noise.agree(2020.0, 2000.0, 0.0) && !noise.agree(2030.0, 2000.0, 0.0));
+        assert!(noise.agree(2030.0, 2000.0, 100.0));
+    }
+}

@@ -93,3 +93,34 @@ fn direction(grey: &Grey, [x, y]: [f32; 2]) -> Option<usize> {
     let steps = (sum_y.atan2(sum_x).rem_euclid(TAU) / TAU * NUM_DIRECTIONS as f32).round();
     Some(super::grey::whole(steps)? % NUM_DIRECTIONS)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A pattern without symmetry, turned about (40, 40).
+    fn picture(angle: f32) -> Grey {
+        let (sin, cos) = angle.sin_cos();
+        let value = |x: f32, y: f32| {
+            let (x, y) = (x - 40.0, y - 40.0);
+            let (x, y) = (cos * x + sin * y, cos * y - sin * x);
+            128.0 + 60.0 * (0.5 * x).sin() * (0.37 * y).cos() + 3.0 * x
+        };
+        let values = (0..80_u8).flat_map(|y| (0..80_u8).map(move |x| value(f32::from(x), f32::from(y))));
+        Grey::from_rows(80, values.collect())
+    }
+
+    #[test]
+    fn a_place_is_known_again_when_it_is_turned_and_from_others() {
+        let pattern = Pattern::default();
+        let known = pattern.describe(&picture(0.0), [40.0, 40.0]).expect("inside");
+        for angle in [0.0, 0.7, 2.0, -2.9] {
+            let turned = pattern.describe(&picture(angle), [40.0, 40.0]).expect("inside");
+            // Directions are told apart to 12°, and half of that moves some places to the other side.
+            assert!(distance(&known, &turned) < 50, "{angle}: {}", distance(&known, &turned));
+        }
+        let other = pattern.describe(&picture(0.0), [44.0, 36.0]).expect("inside");
+        assert!(distance(&known, &other) > 64, "{}", distance(&known, &other));
+        assert_eq!(pattern.describe(&picture(0.0), [5.0, 40.0]), None);
+    }
+}

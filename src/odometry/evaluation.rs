@@ -90,3 +90,84 @@ pub fn nearest_in_time(list: &[TimedPose], time_s: f64) -> Option<&TimedPose> {
     let nearest = before.into_iter().chain(list.get(after)).min_by(|a, b| off(a).total_cmp(&off(b)))?;
     (off(&nearest) <= MOST_TIME_OFF_S).then_some(nearest)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::UnitQuaternion;
+
+    /// A spiral, ten poses a second.
+    fn spiral() -> Vec<TimedPose> {
+        let pose = |idx: u32| {
+            let time_s = f64::from(idx) / 10.0;
+            let rotation = UnitQuaternion::from_euler_angles(0.1 * time_s, 0.2 * time_s, -0.3 * time_s);
+            let position = Vec3::new(400.0 * time_s.cos(), 300.0 * time_s.sin(), 50.0 * time_s);
+            TimedPose { time_s, world_from_sensor: Transform::from_parts(position, rotation) }
+        };
+        (0..60).map(pose).collect()
+    }
+
+    fn changed(change: impl Fn(usize, &mut Rigid)) -> Vec<TimedPose> {
+        let mut poses = spiral();
+        for (idx, pose) in poses.iter_mut().enumerate() {
+            let mut rigid = *pose.world_from_sensor.rigid();
+            change(idx, &mut rigid);
+            pose.world_from_sensor = Transform::from_rigid(rigid);
+        }
+        poses
+    }
+
+    #[test]
+    fn another_world_is_no_error() {
+        let moved = Rigid::new(Vec3::new(1000.0, -200.0, 30.0), Vec3::new(0.4, 2.0, -0.3));
+        let found = evaluate(&spiral(), &changed(|_, pose| *pose = moved * *pose)).expect("poses");
+        assert_eq!(found.num_poses, 60);
+        let errors = [found.ate_rmse_mm, found.rpe_translation_rmse_mm, found.rpe_rotation_rmse_rad];
+        // Rounding of positions of a metre.
+        assert!(errors.iter().all(|error| *error < 1e-6), "{found:?}");
+    }
+
+    #[test]
+    fn errors_that_are_known_are_found() {
+        // Every second pose is 1 mm off along the world's z: after alignment ± 0.5 mm, from pose to pose 1 mm.
+        let found = evaluate(&spiral(), &changed(|idx, pose| pose.translation.z += f64::from(u8::from(idx % 2 == 0))));
+        let found = found.expect("poses");
+        assert!(
+            (found.ate_rmse_mm - 0.5).abs() < 1e-3 && (found.rpe_translation_rmse_mm - 1.0).abs() < 1e-9,
+            "{found:?}"
+        );
+        // Every second pose is turned by 0.01 rad about its own z.
+        let found = evaluate(
+            &spiral(),
+            &changed(|idx, pose| {
+                let angle = if idx % 2 == 0 { 0.01 } else { 0.0 };
+                pose.rotation *= UnitQuaternion::from_axis_angle(&Vec3::z_axis(), angle);
+            }),
+        );
+        let found = found.expect("poses");
+        assert!((found.rpe_rotation_rmse_rad - 0.01).abs() < 1e-9 && found.ate_rmse_mm < 1e-6, "{found:?}");
+    }
+
+    #[test]
+    fn poses_of_other_moments_are_left_out() {
+        let truth = spiral();
+        let mut later = spiral();
+        later.iter_mut().for_each(|pose| pose.time_s += 0.009);
+        assert_eq!(evaluate(&truth, &later).map(|found| found.num_poses), Some(60));
+        later.iter_mut().for_each(|pose| pose.time_s += 0.03);
+        assert_eq!(evaluate(&truth, &later), None);
+        assert_eq!(evaluate(&truth, &truth[..2]), None);
+        assert_eq!(evaluate(&truth, &truth[10..15]).map(|found| found.num_poses), Some(5));
+        let line: Vec<TimedPose> = truth
+            .iter()
+            .map(|pose| TimedPose {
+                world_from_sensor: Transform::from_parts(Vec3::x() * pose.time_s, UnitQuaternion::identity()),
+                ..*pose
+            })
+            .collect();
+        assert!(
+            evaluate(&line, &line)
+                .is_some_and(|found| found.ate_rmse_mm.is_nan() && found.rpe_rotation_rmse_rad < 1e-9)
+        );
+    }
+}

@@ -5,7 +5,7 @@
 //! reference and taken once. The patch is warped beforehand to how it must look now, and only its place is sought. Brightness
 //! and contrast of the patch may change.
 
-use super::grey::{Grey, whole};
+use super::grey::{Grey, as_float, whole};
 
 /// Side of the patch, px of each level.
 const SIDE: usize = 16;
@@ -144,7 +144,7 @@ impl Template {
         if column + SIDE >= grey.width() || row + SIDE >= grey.height() {
             return None;
         }
-        let (right, down) = ((x - HALF).fract(), (y - HALF).fract());
+        let (right, down) = (x - HALF - as_float(column), y - HALF - as_float(row));
         let weights = [(1.0 - right) * (1.0 - down), right * (1.0 - down), (1.0 - right) * down, right * down];
         // A sum for every column: all of them at once.
         let mut sums = [[0.0; SIDE]; 5];

@@ -76,7 +76,7 @@ impl Grey {
         }
         let at = row * self.width + column;
         let (upper, lower) = (self.values.get(at..at + 2)?, self.values.get(at + self.width..at + self.width + 2)?);
-        let (right, down) = (x.fract(), y.fract());
+        let (right, down) = (x - as_float(column), y - as_float(row));
         let above = upper[0] + right * (upper[1] - upper[0]);
         let below = lower[0] + right * (lower[1] - lower[0]);
         Some(above + down * (below - above))
@@ -88,6 +88,12 @@ impl Grey {
 pub fn whole(value: f32) -> Option<usize> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the range of u16")]
     (0.0..65_536.0).contains(&value).then(|| usize::from(value as u16))
+}
+
+/// A coordinate that [`whole`] gave, as a number again.
+#[must_use]
+pub fn as_float(whole: usize) -> f32 {
+    u16::try_from(whole).map_or(0.0, f32::from)
 }
 
 #[cfg(test)]

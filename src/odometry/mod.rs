@@ -47,4 +47,4 @@ pub use camera::{CameraError, DepthImage, Intrinsics, RgbdCamera, RgbdFrame};
 pub use evaluation::{Evaluation, TimedPose, evaluate};
 pub use outcome::{Failure, FrameOutcome, Match, Motion, Tracking};
 pub use pipeline::{Estimator, Odometry, OdometryOptions};
-pub use trajectory::Travel;
+pub use trajectory::{Odometer, Travel};

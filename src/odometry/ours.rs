@@ -13,7 +13,7 @@ use super::descriptors::Pattern;
 use super::features::CornerSearch;
 use super::keyframe::{Found, Keyframe};
 use super::matching::mutual;
-use super::outcome::{Failure, Match};
+use super::outcome::{Estimated, EstimatedMotion, Failure, Match};
 use super::published::Features;
 use super::reprojection::{Estimate, Search, Sighting, estimate};
 use super::view::View;
@@ -74,30 +74,6 @@ struct Current {
     time_s: f64,
 }
 
-/// The motion since the last frame that was tracked.
-#[derive(Clone, Debug)]
-pub struct OurMotion {
-    /// The motion.
-    pub sensor_from_previous: Rigid,
-    /// Covariance of a perturbation from the right.
-    pub covariance: Matrix6<f64>,
-    /// Spread of a coordinate of a pixel, px.
-    pub residual_px: f64,
-    /// Whether the place was recognised by what it looks like.
-    pub is_recognised: bool,
-}
-
-/// What a frame gave.
-#[derive(Clone, Debug)]
-pub struct Step {
-    /// Corners of this frame: those of a new keyframe, else the points found again.
-    pub features: Vec<[f32; 2]>,
-    /// Points found again.
-    pub matches: Vec<Match>,
-    /// The motion, none for a frame to start with.
-    pub motion: Result<Option<OurMotion>, Failure>,
-}
-
 impl Ours {
     /// Forgets everything: the next frame is one to start with.
     pub fn restart(&mut self) {
@@ -125,12 +101,12 @@ impl Ours {
         camera: &Intrinsics,
         pattern: &Pattern,
         options: &OursOptions,
-    ) -> Step {
+    ) -> Estimated {
         let Some(current) = &mut self.keyframe else {
             let keyframe = Keyframe::new(view, camera, &options.noise, &options.corners, pattern);
             if keyframe.num_landmarks() < MIN_INLIERS {
                 let failure = Failure::TooFewFeatures { found: keyframe.num_landmarks(), needed: MIN_INLIERS };
-                return Step {
+                return Estimated {
                     features: keyframe.features().pixels.clone(),
                     matches: Vec::new(),
                     motion: Err(failure),
@@ -138,7 +114,7 @@ impl Ours {
             }
             let features = keyframe.features().pixels.clone();
             self.keyframe = Some(Current::of(keyframe, time_s));
-            return Step { features, matches: Vec::new(), motion: Ok(None) };
+            return Estimated { features, matches: Vec::new(), motion: Ok(None) };
         };
         let guess = current.predicted(time_s);
         let followed = current.follow(&view, camera, guess, COARSEST_LEVEL, options);
@@ -149,7 +125,7 @@ impl Ours {
                 Err(failure) => {
                     current.velocity = None;
                     let matches = lost.map_or_else(Vec::new, |lost| current.matches(&lost));
-                    return Step { features: seen(&matches), matches, motion: Err(failure) };
+                    return Estimated { features: seen(&matches), matches, motion: Err(failure) };
                 }
             },
         };
@@ -169,7 +145,7 @@ impl Ours {
                 *current = Current { velocity, ..Current::of(keyframe, time_s) };
             }
         }
-        Step { features, matches, motion: Ok(Some(motion)) }
+        Estimated { features, matches, motion: Ok(Some(motion)) }
     }
 }
 
@@ -261,20 +237,26 @@ impl Current {
             .collect()
     }
 
-    fn advance(&mut self, sighted: &Sighted, time_s: f64, is_recognised: bool, options: &OursOptions) -> OurMotion {
+    fn advance(
+        &mut self,
+        sighted: &Sighted,
+        time_s: f64,
+        is_recognised: bool,
+        options: &OursOptions,
+    ) -> EstimatedMotion {
         let Sighted { found, sightings, estimate } = sighted;
         self.keyframe.learn(found, sightings, estimate, &options.noise);
         let keyframe_from_previous = self.sensor_from_keyframe.inverse();
         let sensor_from_previous = estimate.sensor_from_reference * keyframe_from_previous;
         // A perturbation of the keyframe's side, as the frame before sees it.
-        let by_previous = adjoint(&self.sensor_from_keyframe);
+        let by_previous = se3::adjoint(&self.sensor_from_keyframe);
         let covariance = by_previous * (estimate.covariance + self.covariance) * by_previous.transpose();
         let elapsed_s = time_s - self.time_s;
         self.velocity = (elapsed_s > 0.0 && !is_recognised).then(|| se3::log(&sensor_from_previous) / elapsed_s);
         self.sensor_from_keyframe = estimate.sensor_from_reference;
         self.covariance = estimate.covariance;
         self.time_s = time_s;
-        OurMotion { sensor_from_previous, covariance, residual_px: estimate.pixel_std, is_recognised }
+        EstimatedMotion { sensor_from_previous, covariance, residual_px: estimate.pixel_std, is_recognised }
     }
 }
 
@@ -282,15 +264,4 @@ fn is_enough(estimate: &Estimate) -> bool {
     #[expect(clippy::cast_precision_loss, reason = "numbers of points")]
     let part = estimate.num_inliers() as f64 / estimate.is_inlier.len().max(1) as f64;
     estimate.num_inliers() >= MIN_INLIERS && part >= LEAST_AGREEING
-}
-
-/// How a perturbation of `Src` looks in `Dst`: `dst_from_src exp(δ) = exp(adjoint δ) dst_from_src`.
-fn adjoint(dst_from_src: &Rigid) -> Matrix6<f64> {
-    let rotation = dst_from_src.rotation.to_rotation_matrix().into_inner();
-    let mut adjoint = Matrix6::zeros();
-    adjoint.fixed_view_mut::<3, 3>(0, 0).copy_from(&rotation);
-    adjoint.fixed_view_mut::<3, 3>(3, 3).copy_from(&rotation);
-    let moved = crate::geometry::so3::hat(dst_from_src.translation.vector) * rotation;
-    adjoint.fixed_view_mut::<3, 3>(3, 0).copy_from(&moved);
-    adjoint
 }

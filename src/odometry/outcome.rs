@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix6;
 
-use crate::geometry::{Rigid, Sensor, Transform, World};
+use crate::geometry::{Rigid, Sensor, Transform, World, se3};
 
 use super::trajectory::Travel;
 
@@ -68,6 +68,39 @@ pub struct Motion {
     /// Spread of a coordinate of a pixel about where the motion has it, px; of the published method, root mean square.
     pub residual_px: f64,
     /// Whether the place was recognised by what it looks like, as it could not be followed.
+    pub is_recognised: bool,
+}
+
+impl Motion {
+    /// The covariance along the axes of the camera at this frame: of a perturbation from the left.
+    #[must_use]
+    pub fn covariance_in_sensor(&self) -> Matrix6<f64> {
+        let by_sensor = se3::adjoint(&self.sensor_from_previous);
+        by_sensor * self.covariance * by_sensor.transpose()
+    }
+}
+
+/// What an estimator makes of a frame.
+#[derive(Clone, Debug)]
+pub struct Estimated {
+    /// Corners of this frame.
+    pub features: Vec<[f32; 2]>,
+    /// Points of an earlier frame seen again.
+    pub matches: Vec<Match>,
+    /// The motion; none for a frame to start with.
+    pub motion: Result<Option<EstimatedMotion>, Failure>,
+}
+
+/// The motion since the last frame that was tracked, as an estimator has it.
+#[derive(Clone, Debug)]
+pub struct EstimatedMotion {
+    /// As in [`Motion`].
+    pub sensor_from_previous: Rigid,
+    /// As in [`Motion`].
+    pub covariance: Matrix6<f64>,
+    /// As in [`Motion`].
+    pub residual_px: f64,
+    /// As in [`Motion`].
     pub is_recognised: bool,
 }
 

@@ -6,9 +6,9 @@ use super::cadence::Cadence;
 use super::camera::{DepthImage, RgbdCamera, RgbdFrame};
 use super::depth_filter::DepthFilter;
 use super::descriptors::Pattern;
-use super::ours::{Ours, OursOptions, Step};
-use super::outcome::{Failure, FrameOutcome, Match, Motion, Tracking};
-use super::published::{self, Features, PublishedOptions};
+use super::ours::{Ours, OursOptions};
+use super::outcome::{Estimated, FrameOutcome, Motion, Tracking};
+use super::published::{Published, PublishedOptions};
 use super::trajectory::Odometer;
 use super::view::View;
 
@@ -90,15 +90,8 @@ struct Last {
 
 #[derive(Clone, Debug)]
 enum Engine {
-    Published(Option<Box<Features>>),
+    Published(Published),
     Ours(Box<Ours>),
-}
-
-/// What an estimator says of a frame.
-struct Estimated {
-    features: Vec<[f32; 2]>,
-    matches: Vec<Match>,
-    motion: Result<Option<Motion>, Failure>,
 }
 
 impl Odometry {
@@ -106,7 +99,7 @@ impl Odometry {
     #[must_use]
     pub fn new(camera: RgbdCamera, options: OdometryOptions) -> Self {
         let engine = match options.estimator {
-            Estimator::Published => Engine::Published(None),
+            Estimator::Published => Engine::Published(Published::default()),
             Estimator::Ours => Engine::Ours(Box::default()),
         };
         Self {
@@ -147,7 +140,7 @@ impl Odometry {
         }
         if self.num_lost >= MOST_LOST {
             match &mut self.engine {
-                Engine::Published(features) => *features = None,
+                Engine::Published(published) => published.restart(),
                 Engine::Ours(ours) => ours.restart(),
             }
         }
@@ -179,7 +172,15 @@ impl Odometry {
             Ok(Some(motion)) => {
                 let last = self.last.map_or(self.options.world_from_first, |last| last.world_from_sensor);
                 let world_from_sensor = last * Transform::from_rigid(motion.sensor_from_previous.inverse());
-                outcome.tracking = Tracking::Tracked(Box::new(motion));
+                outcome.tracking = Tracking::Tracked(Box::new(Motion {
+                    previous: self.last.map_or(0, |last| last.number),
+                    sensor_from_previous: motion.sensor_from_previous,
+                    covariance: motion.covariance,
+                    num_inliers: outcome.matches.iter().filter(|found| found.is_inlier).count(),
+                    num_matches: outcome.matches.len(),
+                    residual_px: motion.residual_px,
+                    is_recognised: motion.is_recognised,
+                }));
                 renormalised(&world_from_sensor)
             }
         };
@@ -192,63 +193,13 @@ impl Odometry {
     }
 
     fn estimate(&mut self, view: View, time_s: f64) -> Estimated {
-        let camera = &self.camera.color;
-        let previous = self.last.map_or(0, |last| last.number);
+        let (camera, pattern, options) = (&self.camera.color, &self.pattern, &self.options);
         match &mut self.engine {
-            Engine::Ours(ours) => {
-                let Step { matches, features, motion } =
-                    ours.push(view, time_s, camera, &self.pattern, &self.options.ours);
-                let num_inliers = matches.iter().filter(|found| found.is_inlier).count();
-                let num_matches = matches.len();
-                let motion = motion.map(|motion| {
-                    motion.map(|motion| Motion {
-                        previous,
-                        sensor_from_previous: motion.sensor_from_previous,
-                        covariance: motion.covariance,
-                        num_inliers,
-                        num_matches,
-                        residual_px: motion.residual_px,
-                        is_recognised: motion.is_recognised,
-                    })
-                });
-                Estimated { features, matches, motion }
-            }
-            Engine::Published(before) => {
-                let options = &self.options.published;
-                let now = Features::of(&view, camera, &options.corners, &self.pattern);
-                let features = now.pixels.clone();
-                let Some(last) = before else {
-                    let found = features.len();
-                    let needed = published::MIN_INLIERS;
-                    let motion = if found < needed { Err(Failure::TooFewFeatures { found, needed }) } else { Ok(None) };
-                    if motion.is_ok() {
-                        *before = Some(Box::new(now));
-                    }
-                    return Estimated { features, matches: Vec::new(), motion };
-                };
-                let (matches, motion) = published::motion(camera, last, &now, options, PUBLISHED_SEED);
-                let num_inliers = matches.iter().filter(|found| found.is_inlier).count();
-                let num_matches = matches.len();
-                let motion = motion.map(|motion| {
-                    **last = now;
-                    Some(Motion {
-                        previous,
-                        sensor_from_previous: motion.sensor_from_previous,
-                        covariance: motion.covariance,
-                        num_inliers,
-                        num_matches,
-                        residual_px: motion.residual_px,
-                        is_recognised: false,
-                    })
-                });
-                Estimated { features, matches, motion }
-            }
+            Engine::Ours(ours) => ours.push(view, time_s, camera, pattern, &options.ours),
+            Engine::Published(published) => published.push(&view, camera, pattern, &options.published),
         }
     }
 }
-
-/// Whatever the seed, the same frames give the same motion.
-const PUBLISHED_SEED: u64 = 5;
 
 /// A thousand products later a quaternion would not be one of length 1 any more.
 fn renormalised(pose: &Transform<World, Sensor>) -> Transform<World, Sensor> {

@@ -14,7 +14,7 @@ use super::depth_filter::DepthNoise;
 use super::descriptors::{Descriptor, Pattern};
 use super::features::{CornerSearch, corners};
 use super::matching::nearest;
-use super::outcome::{Failure, Match};
+use super::outcome::{Estimated, EstimatedMotion, Failure, Match};
 use super::ransac::{self, SAMPLE};
 use super::rigid_motion;
 use super::view::View;
@@ -73,36 +73,62 @@ impl Features {
     }
 }
 
-/// The motion between two frames.
-#[derive(Clone, Debug)]
-pub struct PublishedMotion {
-    /// The motion of the best sample.
-    pub sensor_from_previous: Rigid,
-    /// Covariance of a perturbation from the right, by the noise of the depths of the sample alone.
-    pub covariance: Matrix6<f64>,
-    /// Root mean square distance of inliers on the picture, px.
-    pub residual_px: f64,
+/// Fewer inliers than this are a coincidence.
+const MIN_INLIERS: usize = 10;
+
+/// The estimator: it keeps the features of the last frame that was tracked.
+#[derive(Clone, Debug, Default)]
+pub struct Published {
+    previous: Option<Features>,
 }
 
-/// Fewer inliers than this are a coincidence.
-pub const MIN_INLIERS: usize = 10;
+impl Published {
+    /// Forgets everything: the next frame is one to start with.
+    pub fn restart(&mut self) {
+        self.previous = None;
+    }
+
+    /// Takes the next frame.
+    pub fn push(
+        &mut self,
+        view: &View,
+        camera: &Intrinsics,
+        pattern: &Pattern,
+        options: &PublishedOptions,
+    ) -> Estimated {
+        let now = Features::of(view, camera, &options.corners, pattern);
+        let features = now.pixels.clone();
+        let (matches, motion) = match &self.previous {
+            _ if features.len() < MIN_INLIERS => {
+                (Vec::new(), Err(Failure::TooFewFeatures { found: features.len(), needed: MIN_INLIERS }))
+            }
+            None => (Vec::new(), Ok(None)),
+            Some(previous) => {
+                let (matches, motion) = motion(camera, previous, &now, options);
+                (matches, motion.map(Some))
+            }
+        };
+        if motion.is_ok() {
+            self.previous = Some(now);
+        }
+        Estimated { features, matches, motion }
+    }
+}
 
 /// Matches two frames and finds the motion. The matches come back in any case.
-pub fn motion(
+fn motion(
     camera: &Intrinsics,
     previous: &Features,
     now: &Features,
     options: &PublishedOptions,
-    seed: u64,
-) -> (Vec<Match>, Result<PublishedMotion, Failure>) {
+) -> (Vec<Match>, Result<EstimatedMotion, Failure>) {
+    /// Whatever the seed, the same frames give the same motion.
+    const SEED: u64 = 5;
     let pairs = nearest(&previous.descriptors, &now.descriptors, options.most_bits);
     let mut matches: Vec<Match> = pairs
         .iter()
         .map(|pair| Match { before: previous.pixels[pair.first], now: now.pixels[pair.second], is_inlier: false })
         .collect();
-    if now.pixels.len() < MIN_INLIERS {
-        return (matches, Err(Failure::TooFewFeatures { found: now.pixels.len(), needed: MIN_INLIERS }));
-    }
     if pairs.len() < MIN_INLIERS {
         return (matches, Err(Failure::TooFast { found: pairs.len(), needed: MIN_INLIERS }));
     }
@@ -125,7 +151,7 @@ pub fn motion(
         }
         Some(motion)
     };
-    let best = ransac::consensus(points.len(), options.num_trials, seed, None, motion_of, score);
+    let best = ransac::consensus(points.len(), options.num_trials, SEED, None, motion_of, score);
     let (Some(best), Some(sample)) = (best, best_sample) else {
         return (matches, Err(Failure::NoAgreement { found: 0, needed: MIN_INLIERS }));
     };
@@ -148,7 +174,7 @@ pub fn motion(
     let covariance = sample_covariance(&sample);
     #[expect(clippy::cast_precision_loss, reason = "a number of pairs")]
     let residual_px = (squares / num_inliers as f64).sqrt();
-    (matches, Ok(PublishedMotion { sensor_from_previous: motion, covariance, residual_px }))
+    (matches, Ok(EstimatedMotion { sensor_from_previous: motion, covariance, residual_px, is_recognised: false }))
 }
 
 /// How well three pairs fix the motion: the noise of depth along each ray, in both frames, and half a pixel across.

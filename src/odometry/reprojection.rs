@@ -261,3 +261,77 @@ impl NormalEquations {
         step.iter().all(|value| value.is_finite()).then(|| motion * se3::exp(&-step))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::stats::SplitMix;
+
+    const SEARCH: Search = Search { most_trials: 500, threshold_px: 3.0, seed: 1 };
+
+    fn camera() -> Intrinsics {
+        Intrinsics::new([640, 480], [525.0, -525.0], [319.5, 239.5]).expect("valid")
+    }
+
+    /// Points before the camera and where they are seen after a motion, with evenly spread noise; every `wrong_every`th is
+    /// seen somewhere else.
+    fn sightings(motion: &Rigid, noise_px: f64, wrong_every: usize) -> Vec<Sighting> {
+        let mut random = SplitMix::new(4);
+        let mut within = |from: f64, to: f64| {
+            from + (to - from) * f64::from(u32::try_from(random.below(100_000)).expect("small")) / 1e5
+        };
+        (0..200)
+            .map(|idx| {
+                let point_mm = camera().point_at([within(20.0, 620.0), within(20.0, 460.0)], within(800.0, 4000.0));
+                let moved = motion.rotation * point_mm + motion.translation.vector;
+                let mut pixel = camera().pixel_of(&moved).expect("before the camera");
+                pixel.iter_mut().for_each(|value| *value += within(-noise_px, noise_px));
+                if idx % wrong_every == 1 {
+                    pixel = [within(0.0, 640.0), within(0.0, 480.0)];
+                }
+                Sighting { point_mm, point_depth_variance: 1.0, pixel, depth: Some([moved.z, 1.0]) }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn the_motion_is_found_without_a_guess_and_among_wrong_pairs() {
+        for (motion, wrong_every) in [
+            (Rigid::new(Vec3::new(20.0, -5.0, 40.0), Vec3::new(0.01, -0.02, 0.005)), 1000),
+            (Rigid::new(Vec3::new(-300.0, 150.0, 200.0), Vec3::new(0.1, 0.3, -0.2)), 3),
+        ] {
+            let exact = estimate(&camera(), &sightings(&motion, 0.0, wrong_every), None, &SEARCH).expect("a motion");
+            let off = motion.inverse() * exact.sensor_from_reference;
+            assert!(off.translation.vector.norm() < 1e-3 && off.rotation.angle() < 1e-6, "{off}");
+            let wrong =
+                exact.is_inlier.iter().enumerate().filter(|(idx, is_inlier)| **is_inlier == (idx % wrong_every == 1));
+            assert!(wrong.count() <= 1);
+        }
+    }
+
+    #[test]
+    fn the_covariance_says_how_far_it_is_off() {
+        let motion = Rigid::new(Vec3::new(20.0, -5.0, 40.0), Vec3::new(0.01, -0.02, 0.005));
+        let found =
+            estimate(&camera(), &sightings(&motion, 0.5, 1000), Some(Rigid::identity()), &SEARCH).expect("a motion");
+        let off = se3::log(&(motion.inverse() * found.sensor_from_reference));
+        let squared = off.dot(&(found.covariance.try_inverse().expect("regular") * off));
+        // Of six normal values more than 22 comes once in a thousand.
+        assert!(squared < 22.0, "{squared}");
+        // Even noise of ± 0.5 px has a σ of 0.29 px.
+        assert!((0.2..0.45).contains(&found.pixel_std), "{}", found.pixel_std);
+    }
+
+    #[test]
+    fn too_few_points_and_points_behind_give_no_motion() {
+        let few = &sightings(&Rigid::identity(), 0.0, 1000)[..2];
+        assert_eq!(estimate(&camera(), few, None, &SEARCH), None);
+        let behind: Vec<Sighting> = sightings(&Rigid::identity(), 0.0, 1000)
+            .into_iter()
+            .map(|sighting| Sighting { point_mm: -sighting.point_mm, ..sighting })
+            .collect();
+        // A half turn brings them before the camera, but hardly one to where it was seen.
+        let found = estimate(&camera(), &behind, Some(Rigid::identity()), &SEARCH);
+        assert!(found.is_none_or(|found| found.num_inliers() < 10));
+    }
+}

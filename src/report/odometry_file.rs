@@ -3,10 +3,14 @@
 
 use serde_json::{Value, json};
 
+use crate::calibrate::MethodResult;
 use crate::geometry::stats;
 use crate::odometry::{Estimator, Evaluation, Motion, Tracking, Travel};
+use crate::session::Session;
 use crate::session::sequence::{FrameRecord, SequenceNote};
 use crate::text::odometry::{failure_message, tracking_word};
+
+use super::result_file::method_entry;
 
 /// The format's name.
 pub const FORMAT: &str = "handeye-odometry";
@@ -26,6 +30,10 @@ pub struct OdometryResult<'a> {
     pub notes: &'a [SequenceNote],
     /// How far the trajectory is off, where the truth is known.
     pub evaluation: Option<Evaluation>,
+    /// The session that names the sequence, or an empty one: where the camera is mounted, and on what.
+    pub session: &'a Session,
+    /// The hand-eye calibration, where the robot's poses are known.
+    pub hand_eye: Option<&'a MethodResult>,
 }
 
 /// Frames by what became of them.
@@ -107,7 +115,7 @@ pub fn odometry_file(result: &OdometryResult<'_>) -> Value {
     let [motion_ms, decode_ms] = result.medians_ms();
     let evaluation = result.evaluation;
     let trajectory: Vec<[f64; 8]> = result.records.iter().filter_map(trajectory_row).collect();
-    json!({
+    let mut file = json!({
         "format": FORMAT,
         "version": VERSION,
         "sequence": result.name,
@@ -135,7 +143,11 @@ pub fn odometry_file(result: &OdometryResult<'_>) -> Value {
         })).collect::<Vec<_>>(),
         "notes": result.notes.iter().map(ToString::to_string).collect::<Vec<_>>(),
         "trajectory": trajectory,
-    })
+    });
+    if let Some(hand_eye) = result.hand_eye {
+        file["hand_eye"] = method_entry(result.session, hand_eye, None);
+    }
+    file
 }
 
 /// Time (s), position (m), quaternion with w last.

@@ -105,7 +105,9 @@ impl Found<'_> {
             rejected,
             target_translation_std_mm,
             target_rotation_std_rad,
-            reduced,
+            tracked: None,
+            time_offset: None,
+            reduced: Some(reduced),
         };
         let stations = stations(used, &places, &motion, &left_out_mm);
         let (noise, converged, num_iterations) =
@@ -162,7 +164,8 @@ impl Found<'_> {
         motion: &MotionFound,
         uncertainty: Option<&Uncertainty>,
     ) {
-        let num_stations = motion.reduced.num_stations;
+        let Some(reduced) = &motion.reduced else { return };
+        let num_stations = reduced.num_stations;
         if num_stations < FEW_BELOW {
             self.warnings.push(Warning::FewStations { num_stations, recommended: RECOMMENDED_POSES });
         }
@@ -179,9 +182,12 @@ impl Found<'_> {
                 fault: rejected.fault,
             });
         }
+        // Poses that are read the wrong way round have no size.
+        let is_inverted = self.warnings.iter().any(|warning| matches!(warning, Warning::StreamInverted { .. }));
         let doubt = uncertainty.map_or(1.0, |known| doubt_in_the_noise(known.degrees_of_freedom).sqrt());
         if num_stations > MIN_POSES + 1
-            && let Some((factor, std)) = scale(&motion.reduced.poses, &motion.reduced.state, doubt)
+            && !is_inverted
+            && let Some((factor, std)) = scale(&reduced.poses, &reduced.state, doubt)
             && (factor - 1.0).abs() > SCALE_OFF
             && (factor - 1.0).abs() > SCALE_AT_STDS * std
         {
@@ -219,7 +225,7 @@ fn motion_pose(measured: &Measured<'_>, pose: &PosePair, state: &MotionState) ->
     }
 }
 
-fn against(answer: &Answer, poses: &[PosePair], refined: &MotionState) -> ClosedFormAnswer {
+pub(super) fn against(answer: &Answer, poses: &[PosePair], refined: &MotionState) -> ClosedFormAnswer {
     let answered = answer.flange_from_sensor.map(|sensor| {
         let state = MotionState::with_mean_target(sensor, poses);
         Answered {

@@ -1,6 +1,6 @@
 //! What the method found besides the calibration itself.
 
-use crate::calibrate::PoseFault;
+use crate::calibrate::{PoseFault, RmsMax};
 use crate::geometry::{Base, Flange, Sensor, Target, Transform, Vec3};
 
 use super::closed_form::ClosedForm;
@@ -83,6 +83,36 @@ pub struct MotionFound {
     pub target_translation_std_mm: f64,
     /// The same of its orientation about each axis, rad.
     pub target_rotation_std_rad: f64,
-    /// The data at the minimum, for validation and diagnosis.
-    pub reduced: MotionReduced,
+    /// What is said of a camera that tracks its own motion; `None` of a target.
+    pub tracked: Option<Tracked>,
+    /// By how much the clocks differ, where that was looked for.
+    pub time_offset: Option<TimeOffset>,
+    /// The data at the minimum, for validation and diagnosis; `None` of a tracked motion, whose poses hang together.
+    pub reduced: Option<MotionReduced>,
+}
+
+/// How well the steps of a tracked motion agree with those of the flange.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tracked {
+    /// Steps from pose to pose.
+    pub num_steps: usize,
+    /// Those in which the camera lost its way; they were not used.
+    pub num_lost: usize,
+    /// What the steps used are off by.
+    pub step_mm: RmsMax,
+    /// The same of their turns, root mean square, rad.
+    pub step_rms_rad: f64,
+    /// By how much larger than stated the standard deviation of a step's rotation is.
+    pub rotation_std_factor: f64,
+    /// The same of its translation.
+    pub translation_std_factor: f64,
+}
+
+/// By how much two clocks differ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimeOffset {
+    /// To be added to the camera's times, s.
+    pub offset_s: f64,
+    /// Its standard deviation, s; `None` where the data do not tell, and the offset is one by the rotation speeds or zero.
+    pub std_s: Option<f64>,
 }

@@ -19,18 +19,22 @@ mod refine;
 mod rejection;
 mod scale;
 mod start;
+mod steps;
+pub mod streams;
+pub mod time_offset;
 
 pub use closed_form::ClosedForm;
-pub use found::{Answered, ClosedFormAnswer, MotionFound, MotionPose, RejectedPose};
+pub use found::{Answered, ClosedFormAnswer, MotionFound, MotionPose, RejectedPose, TimeOffset, Tracked};
 pub use measured::MIN_POSES;
 pub use pose::{MotionState, PosePair};
 pub use reduced::{MotionReduced, MotionRefit};
+pub use streams::{CameraPose, StreamProblem, Weighing, solve_streams};
 
 use crate::geometry::Rigid;
 
 use super::{MotionProblem, Solution, SolveError, Warning};
 use assemble::Found;
-use measured::measured;
+use measured::{Measured, measured};
 use noise::MotionNoise;
 use pair::chosen;
 use rejection::settle_on_agreeing;
@@ -59,9 +63,19 @@ pub fn solve(problem: &MotionProblem) -> Result<Solution, SolveError> {
 /// # Errors
 /// [`SolveError`] if nothing can be computed from this problem.
 pub fn refined(problem: &MotionProblem) -> Result<Rigid, SolveError> {
+    let (measured, start) = started(problem)?;
+    Ok(refine::settle(&measured, start, MotionNoise::of(problem))?.minimum.unknowns.flange_from_sensor)
+}
+
+/// The least sum of squares, by the noise as it is stated.
+fn least_squares(problem: &MotionProblem) -> Result<f64, SolveError> {
+    let (measured, start) = started(problem)?;
+    Ok(refine::settle_with(&measured, start, MotionNoise::of(problem))?.minimum.sums.cost)
+}
+
+fn started(problem: &MotionProblem) -> Result<(Vec<Measured<'_>>, MotionState), SolveError> {
     let (measured, _) = measured(problem)?;
     let poses: Vec<PosePair> = measured.iter().map(|measured| measured.pose).collect();
     let sensor = ClosedForm::Park.solve(&poses, &chosen(&poses)).ok_or(SolveError::Diverged)?;
-    let start = MotionState::with_mean_target(sensor, &poses);
-    Ok(refine::settle(&measured, start, MotionNoise::of(problem))?.minimum.unknowns.flange_from_sensor)
+    Ok((measured, MotionState::with_mean_target(sensor, &poses)))
 }

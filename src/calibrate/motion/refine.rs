@@ -52,7 +52,15 @@ pub(super) fn settle(measured: &[Measured<'_>], start: MotionState, noise: Motio
     Ok(settled)
 }
 
-fn settle_with(measured: &[Measured<'_>], start: MotionState, noise: MotionNoise) -> Result<Settled, SolveError> {
+/// The same, whatever the data say of the noise that is stated.
+///
+/// # Errors
+/// As [`settle`].
+pub(super) fn settle_with(
+    measured: &[Measured<'_>],
+    start: MotionState,
+    noise: MotionNoise,
+) -> Result<Settled, SolveError> {
     let mut noise = noise;
     let mut state = start;
     let mut latest = None;

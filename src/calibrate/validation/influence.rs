@@ -93,7 +93,7 @@ fn of_plate(plate: &PlateFound, reference_point: Vec3) -> Option<Vec<Influence>>
 
 /// The same for a target's poses: each pose of a station against the solution made without it.
 fn of_motion(solution: &Solution, motion: &MotionFound, reference_point: Vec3) -> Option<Vec<Influence>> {
-    let reduced = &motion.reduced;
+    let reduced = motion.reduced.as_ref()?;
     let here = workspace_point(&reduced.state.flange_from_sensor, reference_point);
     let of_station = |(station, refit): (usize, Option<MotionRefit>)| {
         let refit = refit?;

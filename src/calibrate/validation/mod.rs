@@ -64,7 +64,7 @@ struct Again {
 impl<'a> Data<'a> {
     fn of(solution: &'a Solution) -> Option<Self> {
         let of_plate = || solution.plate.as_ref().map(|plate| Self::Plate(&plate.reduced));
-        let of_motion = || solution.motion.as_ref().map(|motion| Self::Motion(&motion.reduced));
+        let of_motion = || solution.motion.as_ref().and_then(|motion| motion.reduced.as_ref()).map(Self::Motion);
         solution.reduced.as_ref().map(Self::Points).or_else(of_plate).or_else(of_motion)
     }
 

@@ -139,6 +139,12 @@ impl<'o> Import<'o> {
                 self.imported.published = self.imported.published.take().or(published);
                 filled.notation = Some(notation);
             }
+            Recognised::PosePairs(pairs) => {
+                let notation = pairs.notation(self.fallback);
+                self.gathered.set_notation(notation, None, None);
+                pairs.read(source, &mut self.gathered, &mut preview);
+                filled.notation = Some(notation);
+            }
             Recognised::Yaml(document) => {
                 if document.has_poses() {
                     let notation = options.notation.unwrap_or_else(|| document.notation(self.fallback));

@@ -26,6 +26,12 @@ pub enum SequenceError {
         /// What it is needed for.
         needed: &'static str,
     },
+    /// Somebody's files are where a sequence was to be written.
+    #[error("{}: found files in it, needed a new or empty folder; remove it, or choose another name", folder.display())]
+    NotEmpty {
+        /// The folder.
+        folder: PathBuf,
+    },
     /// The operating system did not let us write a file.
     #[error("cannot write {}: {problem}", file.display())]
     Unwritable {

@@ -5,6 +5,7 @@
 
 mod camera_file;
 mod error;
+mod hand_eye;
 mod lists;
 mod pictures;
 mod run;

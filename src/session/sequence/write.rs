@@ -8,11 +8,13 @@ use std::path::{Path, PathBuf};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder as _};
 
-use crate::geometry::{Base, Flange, Frame, Sensor, Transform, World};
+use crate::geometry::{Frame, Sensor, Transform, World};
 use crate::odometry::{RgbdCamera, RgbdFrame};
 use crate::session::error::{on_one_line, system_words};
 
-use super::{ASSOCIATIONS, CAMERA_FILE, COLOR_LIST, DEPTH_LIST, FLANGE, GROUND_TRUTH, SequenceError, camera_file};
+use super::{
+    ASSOCIATIONS, CAMERA_FILE, COLOR_LIST, DEPTH_LIST, FLANGE, GROUND_TRUTH, SequenceError, TimedFlange, camera_file,
+};
 
 /// Writes a sequence frame by frame; the lists are complete with [`SequenceWriter::finish`].
 #[derive(Debug)]
@@ -29,8 +31,11 @@ impl SequenceWriter {
     /// Begins a sequence in a folder, which is made.
     ///
     /// # Errors
-    /// [`SequenceError::Unwritable`].
+    /// [`SequenceError::NotEmpty`] for a folder with files in it, which stays as it is; [`SequenceError::Unwritable`].
     pub fn create(folder: &Path, camera: &RgbdCamera) -> Result<Self, SequenceError> {
+        if fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some()) {
+            return Err(SequenceError::NotEmpty { folder: folder.to_owned() });
+        }
         for part in ["rgb", "depth"] {
             let path = folder.join(part);
             fs::create_dir_all(&path).map_err(|error| unwritable(&path, &system_words(&error)))?;
@@ -48,7 +53,7 @@ impl SequenceWriter {
         })
     }
 
-    /// Adds a frame, with the pose of the camera and of the flange where they are known.
+    /// Adds a frame, with the pose of the camera and of the flange where they are known; that has a time of its own.
     ///
     /// # Errors
     /// [`SequenceError::Unwritable`].
@@ -56,7 +61,7 @@ impl SequenceWriter {
         &mut self,
         frame: &RgbdFrame,
         world_from_sensor: Option<&Transform<World, Sensor>>,
-        base_from_flange: Option<&Transform<Base, Flange>>,
+        flange: Option<&TimedFlange>,
     ) -> Result<(), SequenceError> {
         let time = format!("{:.6}", frame.time_s);
         let (color, depth) = (format!("rgb/{time}.png"), format!("depth/{time}.png"));
@@ -73,8 +78,8 @@ impl SequenceWriter {
         if let Some(pose) = world_from_sensor {
             self.ground_truth.push_str(&pose_line(frame.time_s, pose));
         }
-        if let Some(pose) = base_from_flange {
-            self.flange.push_str(&pose_line(frame.time_s, pose));
+        if let Some(TimedFlange { time_s, base_from_flange }) = flange {
+            self.flange.push_str(&pose_line(*time_s, base_from_flange));
         }
         Ok(())
     }
@@ -118,7 +123,9 @@ fn write_png(
 ) -> Result<(), SequenceError> {
     let file = File::create(path).map_err(|error| unwritable(path, &system_words(&error)))?;
     let mut writer = BufWriter::new(file);
-    PngEncoder::new_with_quality(&mut writer, CompressionType::Best, FilterType::Adaptive)
+    // A depth camera's few distances repeat, and take a quarter less without the differences that suit colours.
+    let filter = if kind == ExtendedColorType::L16 { FilterType::NoFilter } else { FilterType::Adaptive };
+    PngEncoder::new_with_quality(&mut writer, CompressionType::Default, filter)
         .write_image(bytes, width, height, kind)
         .map_err(|error| unwritable(path, &on_one_line(&error.to_string())))?;
     writer.flush().map_err(|error| unwritable(path, &system_words(&error)))

@@ -2,9 +2,10 @@
 
 use std::ops::Range;
 
-use crate::geometry::{Base, Flange, Sensor, Transform, Vec3, World, so3};
+use crate::geometry::{Sensor, Transform, Vec3, World, so3};
 use crate::odometry::{Intrinsics, RgbdCamera, RgbdFrame};
 use crate::scene::{Random, rounded};
+use crate::session::sequence::TimedFlange;
 
 use super::noise::CameraNoise;
 use super::path::{Arm, Carrier, Path, written};
@@ -128,7 +129,7 @@ pub struct RoomFrame {
     /// Where the colour camera truly was.
     pub world_from_sensor: Transform<World, Sensor>,
     /// What the robot reported, and when by its own clock, s; where there is one.
-    pub flange: Option<(f64, Transform<Base, Flange>)>,
+    pub flange: Option<TimedFlange>,
 }
 
 /// A recording; an iterator of its frames, which are rendered one at a time.
@@ -234,14 +235,15 @@ impl RoomRecording {
         Light(sum)
     }
 
-    fn reported(&self, idx: usize, world_from_sensor: &Transform<World, Sensor>) -> (f64, Transform<Base, Flange>) {
+    fn reported(&self, idx: usize, world_from_sensor: &Transform<World, Sensor>) -> TimedFlange {
         let mut random =
             Random::new(self.options.seed, stream::POSE.wrapping_add(stream::FRAME.wrapping_mul(idx as u64 + 1)));
         let exact = self.arm.base_from_flange(world_from_sensor);
         let shift_mm = random.normal3() * self.options.position_std_mm;
         let turn = random.normal3() * self.options.orientation_std_deg.to_radians();
         let noisy = Transform::from_parts(exact.translation_mm() + shift_mm, exact.rotation() * so3::exp(turn));
-        (rounded(self.time_s(idx) + self.options.robot_clock_ahead_s, Some(6)), written(&noisy))
+        let time_s = rounded(self.time_s(idx) + self.options.robot_clock_ahead_s, Some(6));
+        TimedFlange { time_s, base_from_flange: written(&noisy) }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Names of the methods and verdicts.
 
-use crate::calibrate::{Method, Verdict};
+use crate::calibrate::{ClosedForm, Method, PoseFault, Verdict};
 
 /// The method's name in a table head.
 #[must_use]
@@ -70,6 +70,32 @@ pub const fn verdict_id(verdict: Verdict) -> &'static str {
         Verdict::Good => "good",
         Verdict::Usable => "usable",
         Verdict::NotUsable => "not-usable",
+    }
+}
+
+/// What would explain a pose that was left out, in result files.
+#[must_use]
+pub const fn pose_fault_id(fault: PoseFault) -> &'static str {
+    match fault {
+        PoseFault::Inverted => "inverted",
+        PoseFault::Flipped => "flipped",
+        PoseFault::Orientation => "orientation",
+        PoseFault::Place => "place",
+        PoseFault::Both => "both",
+    }
+}
+
+/// A published closed form, with its paper.
+#[must_use]
+pub const fn closed_form_name(form: ClosedForm) -> &'static str {
+    match form {
+        ClosedForm::Tsai => "Tsai & Lenz 1989",
+        ClosedForm::Park => "Park & Martin 1994",
+        ClosedForm::Horaud => "Horaud & Dornaika 1995",
+        ClosedForm::Andreff => "Andreff et al. 2001",
+        ClosedForm::Daniilidis => "Daniilidis 1999",
+        ClosedForm::Shah => "Shah 2013 (A X = Z B)",
+        ClosedForm::Li => "Li et al. 2010 (A X = Z B)",
     }
 }
 

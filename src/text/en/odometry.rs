@@ -104,6 +104,22 @@ pub fn evaluation_line(num_poses: usize, ate_mm: f64, rpe_mm: f64, rpe_deg: f64)
     )
 }
 
+/// Heads the hand-eye calibration.
+pub const HAND_EYE_HEAD: &str = "hand-eye by the camera's motion against the flange's:";
+
+/// There is none.
+#[must_use]
+pub fn no_hand_eye(reason: &str) -> String {
+    format!("no hand-eye calibration from the motion: {reason}")
+}
+
+/// By how much the clocks differ.
+#[must_use]
+pub fn time_offset(offset_s: f64, std_s: Option<f64>) -> String {
+    let std = std_s.map_or_else(String::new, |std_s| format!(" ± {:.1}", 1000.0 * std_s));
+    format!("the robot's times are those of the camera {:+.1}{std} ms", 1000.0 * offset_s)
+}
+
 /// Heads the list of frames that were not tracked.
 #[must_use]
 pub fn trouble_head(count: usize) -> String {

@@ -84,6 +84,9 @@ pub fn warning_message(warning: &Warning) -> String {
         Warning::TargetScale { factor, std } => format!(
             "The target's distances fit better by a factor of {factor:.4} ± {std:.4}: its size is another than was told to whatever found it, or its unit is."
         ),
+        Warning::TimeOffsetUnknown => {
+            "The motions do not tell by how much the clocks of robot and camera differ: they turn too little or too evenly.".to_owned()
+        }
         Warning::NotConverged { num_iterations } => {
             format!("The solver had not settled after {num_iterations} iterations.")
         }
@@ -140,6 +143,7 @@ pub const fn warning_remedy(warning: &Warning) -> &'static str {
         Warning::TargetScale { .. } => {
             "Measure the target with a caliper, and give its true size to the program that finds its pose."
         }
+        Warning::TimeOffsetUnknown => "Let the robot turn to and fro at changing speed while both are recorded.",
         Warning::NotConverged { .. } => "Check poses and units.",
     }
 }

@@ -25,6 +25,7 @@ pub fn labels_of(warning: &Warning) -> &[String] {
         | Warning::RadiusDisagrees { .. }
         | Warning::StreamInverted { .. }
         | Warning::TargetScale { .. }
+        | Warning::TimeOffsetUnknown
         | Warning::NotConverged { .. } => &[],
     }
 }
