@@ -8,6 +8,7 @@ use crate::diagnose::Remedy;
 use crate::plan::Limits;
 use crate::report::document::Options;
 use crate::session::import::ImportOptions;
+use crate::session::sequence::CAMERA_FILE;
 use crate::session::{Edit, Target};
 use crate::verify::Calibration;
 
@@ -30,8 +31,11 @@ impl Command {
     }
 }
 
-/// Sessions are JSON; of a file without an ending nothing else is known.
+/// Sessions are JSON; of a file without an ending nothing else is known. A folder with a camera's file is a sequence.
 fn names_a_session(path: &Path) -> bool {
+    if path.join(CAMERA_FILE).is_file() {
+        return true;
+    }
     match path.extension() {
         Some(ending) => ending.eq_ignore_ascii_case("json") && !path.is_dir(),
         None => !path.is_dir(),

@@ -4,7 +4,6 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use crate::calibrate::Noise;
 use crate::odometry::{Estimator, OdometryOptions, Tracking};
 use crate::report::odometry_file::{OdometryResult, frames_csv, odometry_file};
 use crate::session::sequence::{FrameRecord, Sequence, SequenceRun, trajectory_text};
@@ -60,7 +59,7 @@ fn tracked(args: &OdometryArgs) -> Result<String, Refusal> {
     while run.step(&sequence).is_some() {}
     let trajectory = run.trajectory();
     let evaluation = sequence.evaluate(&trajectory);
-    let hand_eye = sequence.hand_eye(run.records(), session.mount, noise_of(&session));
+    let hand_eye = sequence.hand_eye(run.records(), &session);
     let result = OdometryResult {
         name: &name,
         estimator,
@@ -106,13 +105,6 @@ fn opened(path: &Path) -> Result<(PathBuf, Session), Refusal> {
         return Err((EXIT_WRONG_INPUT, words::not_a_sequence_session(&path.display().to_string())));
     };
     Ok((path.parent().unwrap_or(Path::new(".")).join(sequence), session))
-}
-
-fn noise_of(session: &Session) -> Noise {
-    Noise {
-        position_std_mm: session.robot.position_std_mm,
-        orientation_std_rad: session.robot.orientation_std_deg.map(f64::to_radians),
-    }
 }
 
 fn name_of(folder: &Path) -> String {

@@ -5,9 +5,7 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-use crate::calibrate::{
-    self, BallProblem, MotionProblem, Mount, Noise, PlateProblem, PlateStation, Problem, TargetNoise,
-};
+use crate::calibrate::{self, BallProblem, MotionProblem, Mount, PlateProblem, PlateStation, Problem, TargetNoise};
 use crate::fit::{ArcOptions, EdgeOptions, Feature, Sought};
 use crate::geometry::{Profile, Transform};
 use crate::watch::{Cancelled, Watch};
@@ -265,10 +263,7 @@ fn posed(
     stations: &[Station],
     measured: &MeasuredTarget,
 ) -> Result<Problem, NothingToSolve> {
-    let noise = Noise {
-        position_std_mm: session.robot.position_std_mm,
-        orientation_std_rad: session.robot.orientation_std_deg.map(f64::to_radians),
-    };
+    let noise = session.robot.noise();
     let reference_distance_mm = session.sensor.reference_distance_mm;
     let used = stations.iter().zip(&measured.stations).enumerate().filter(|(_, (station, _))| station.enabled);
     let posed = used.map(|(idx, (station, readings))| (station, posed_station(session.mount, idx, station, readings)));

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde_json::{Map, Value};
 
 pub use crate::calibrate::Edge;
-use crate::calibrate::{Mount, SideChoice};
+use crate::calibrate::{Mount, Noise, SideChoice};
 use crate::geometry::{
     Base, Flange, PoseConvention, PoseNotation, Profile, Rigid, Sensor as SensorFrame, Target as TargetFrame,
     Transform, Vec3,
@@ -31,6 +31,17 @@ pub struct Robot {
     pub orientation_std_deg: Option<f64>,
     /// Fields unknown to us.
     pub unknown: UnknownFields,
+}
+
+impl Robot {
+    /// The noise of its poses, where it is stated.
+    #[must_use]
+    pub fn noise(&self) -> Noise {
+        Noise {
+            position_std_mm: self.position_std_mm,
+            orientation_std_rad: self.orientation_std_deg.map(f64::to_radians),
+        }
+    }
 }
 
 impl Default for Robot {

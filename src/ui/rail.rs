@@ -126,7 +126,14 @@ pub fn show(
         let is_current = step == current;
         response.widget_info(|| WidgetInfo::selected(Role::Tab, true, is_current, step.name_with(workbench)));
         let inner = Rect::from_min_max(rect.min + vec2(8.0, 2.0), rect.max - vec2(8.0, 2.0));
-        paint_step(ui, inner, idx + 1, step.name_with(workbench), is_current, response.hovered() || response.has_focus());
+        paint_step(
+            ui,
+            inner,
+            idx + 1,
+            step.name_with(workbench),
+            is_current,
+            response.hovered() || response.has_focus(),
+        );
         paint_mark(ui, inner, &mark(workbench, selection, num_pose_remarks, step));
         if response.on_hover_text(step.hint_with(workbench)).clicked() {
             actions.push(Action::GoTo(step));

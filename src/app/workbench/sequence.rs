@@ -207,15 +207,14 @@ impl Workbench {
                 (None, None) => Err(words::NO_FILE_YET.to_owned()),
             };
             let measured = Arc::new(measure(&session, None, watch)?);
-            let problem = tracked.and_then(|tracked| hand_eye(&session, &tracked));
-            let (problem, methods, refusal) = match problem {
-                Ok(problem) => {
-                    let methods = problem.solve_all(problem.methods(), watch)?;
-                    (Some(Arc::new(problem)), methods, None)
-                }
-                Err(refusal) => (None, Vec::new(), Some(refusal)),
+            let hand_eye = tracked.and_then(|tracked| {
+                tracked.sequence.hand_eye(&tracked.records, &session).ok_or_else(|| words::NO_FLANGE.to_owned())
+            });
+            let (methods, refusal) = match hand_eye {
+                Ok(found) => (vec![found], None),
+                Err(refusal) => (Vec::new(), Some(refusal)),
             };
-            Ok(Results { revision, measured, problem, methods, refusal, elapsed: start.elapsed() })
+            Ok(Results { revision, measured, problem: None, methods, refusal, elapsed: start.elapsed() })
         });
     }
 
@@ -286,9 +285,4 @@ fn track(
     let tracked = Arc::new(Tracked { key, sequence, records: run.records().to_vec(), evaluation });
     tell(News::Done(Arc::clone(&tracked)));
     Ok(Ok(tracked))
-}
-
-/// The hand-eye calibration from the motions of a sequence whose camera is on a robot; why there is none, in words.
-fn hand_eye(_session: &Session, tracked: &Tracked) -> Result<crate::calibrate::Problem, String> {
-    Err(if tracked.sequence.flange.is_some() { "later".to_owned() } else { words::NO_FLANGE.to_owned() })
 }

@@ -3,23 +3,25 @@
 use nalgebra::Matrix6;
 
 use crate::calibrate::motion::{CameraPose, StreamProblem, Weighing, solve_streams};
-use crate::calibrate::{Method, MethodResult, Mount, Noise};
+use crate::calibrate::{Method, MethodResult};
 use crate::odometry::Tracking;
 
+use super::super::Session;
 use super::{FrameRecord, Sequence};
 
 /// Over a gap nothing is known of the motion, rad² and mm².
 const UNKNOWN: f64 = 1e9;
 
 impl Sequence {
-    /// The hand-eye calibration, where the robot's poses are known.
+    /// The hand-eye calibration, where the robot's poses are known; the session says what the robot is like and where the
+    /// camera is mounted.
     #[must_use]
-    pub fn hand_eye(&self, records: &[FrameRecord], mount: Mount, noise: Noise) -> Option<MethodResult> {
+    pub fn hand_eye(&self, records: &[FrameRecord], session: &Session) -> Option<MethodResult> {
         let flange = self.flange.as_ref()?;
         let problem = StreamProblem {
-            mount,
-            noise,
-            reference_distance_mm: None,
+            mount: session.mount,
+            noise: session.robot.noise(),
+            reference_distance_mm: session.sensor.reference_distance_mm,
             flange: flange.iter().map(|pose| (pose.time_s, pose.base_from_flange)).collect(),
             camera: records.iter().filter_map(camera_pose).collect(),
             weighing: Weighing::Drifting,

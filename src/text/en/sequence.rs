@@ -20,7 +20,7 @@ pub const HEADING_AXIS: &str = "heading (°)";
 /// Title of the axis of features.
 pub const FEATURES_AXIS: &str = "features";
 /// Title of the axis of computing time.
-pub const DURATION_AXIS: &str = "time a frame (ms)";
+pub const DURATION_AXIS: &str = "ms a frame";
 
 /// In place of a value.
 pub const NO_VALUE: &str = "–";
@@ -239,3 +239,9 @@ pub fn summary(with_pose: usize, num_frames: usize, travel: Option<[f64; 2]>, er
 /// Why a sequence gives no calibration.
 pub const NO_FLANGE: &str =
     "The sequence has no flange.txt with the robot's poses: its motion is known, but not how the camera is mounted";
+
+/// A folder that cannot be called by its name.
+#[must_use]
+pub fn no_name(folder: &str) -> String {
+    format!("{folder}: found a folder without a name of its own, needed one beside which the session can be saved")
+}

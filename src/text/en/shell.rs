@@ -119,6 +119,7 @@ pub const fn next_arcs(target: &Target) -> &'static str {
         Target::Ball { .. } => "Look at the arcs",
         Target::RightAnglePlate => "Look at the edges",
         Target::Pose { .. } => "Look at what was seen",
+        Target::Rgbd { .. } => "Look at the sequence",
         _ => "Look at the profiles",
     }
 }

@@ -36,17 +36,25 @@ pub(super) struct OverTime<'a> {
     pub current_s: Option<f64>,
     /// Whether the y axis reaches down to zero.
     pub is_from_zero: bool,
+    /// Whether the curves are named; not where the plot above has named them, or there is one.
+    pub has_legend: bool,
 }
 
+/// Room above a plot without a legend, points.
+const ROOM_ABOVE: f32 = 8.0;
 /// All of them share their x range.
 const GROUP: &str = "sequence over time";
 
 impl OverTime<'_> {
     /// Shows the curves in a height; answers the time that was clicked, s.
     pub fn show(&self, ui: &mut Ui, height: f32, is_first: bool, is_fitted: &mut bool) -> Option<f64> {
-        let entries: Vec<LegendEntry> = self.curves.iter().map(Curve::entry).collect();
         let top = ui.cursor().top();
-        charts::legend(ui, &entries);
+        if self.has_legend {
+            let entries: Vec<LegendEntry> = self.curves.iter().map(Curve::entry).collect();
+            charts::legend(ui, &entries);
+        } else {
+            ui.add_space(ROOM_ABOVE);
+        }
         let taken = ui.cursor().top() - top;
         let mut chart =
             Chart::new(Id::unique(self.id), words::TIME_AXIS, self.y_title, (height - taken).max(1.0), self.extent());

@@ -3,9 +3,9 @@
 use std::rc::Rc;
 use std::sync::Arc;
 
-use egui::{Align, ColorImage, ComboBox, DragValue, Layout, Rect, Role, Ui, UiBuilder, WidgetInfo, vec2};
+use egui::{Align, ColorImage, ComboBox, DragValue, Label, Layout, Rect, Role, Ui, UiBuilder, WidgetInfo, vec2};
 
-use crate::app::workbench::sequence::{FramePictures, SequenceBench, SequenceCommand, TrackOptions};
+use crate::app::workbench::sequence::{FramePictures, SequenceBench, SequenceCommand, TrackOptions, Tracked};
 use crate::app::{Command, Workbench};
 use crate::odometry::{DepthImage, Estimator};
 use crate::report::odometry_file::frames_csv;
@@ -23,8 +23,8 @@ use super::picture::{Distances, Picture, Pixel, Scene, Shown, Way, distances_ima
 use super::player::Player;
 use super::trajectory::{self as way, Eye};
 
-/// Height of the player's card, points: two rows.
-const PLAYER_HEIGHT: f32 = 74.0;
+/// Height of the player's card, points: three rows.
+const PLAYER_HEIGHT: f32 = 100.0;
 /// The part of what is left that picture and way take.
 const UPPER_PART: f32 = 0.56;
 /// Below this width the cards stand above each other.
@@ -213,12 +213,9 @@ fn player_card(
                     state.player.show(ui, &model.times_s, width);
                     ui.with_layout(Layout::right_to_left(Align::Center), |ui| options(ui, context, state));
                 });
-                ui.horizontal(|ui| {
-                    ui.label(frame_sentence(context.workbench.sequence(), sequence, model, state.player.frame_idx));
-                    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                        summary(ui, context.workbench, sequence);
-                    });
-                });
+                let sentence = frame_sentence(context.workbench.sequence(), sequence, model, state.player.frame_idx);
+                ui.add(Label::new(&sentence).truncate());
+                ui.horizontal(|ui| summary(ui, context.workbench, sequence));
             });
         },
     );
@@ -289,7 +286,7 @@ fn frame_sentence(bench: &SequenceBench, sequence: &Sequence, model: &Model, fra
     format!("{head} · {found}")
 }
 
-/// What came of the sequence, and its files; from right to left.
+/// What came of the sequence, and its files.
 fn summary(ui: &mut Ui, workbench: &Workbench, sequence: &Sequence) {
     let bench = workbench.sequence();
     let Some(tracked) = bench.tracked() else {
@@ -298,6 +295,29 @@ fn summary(ui: &mut Ui, workbench: &Workbench, sequence: &Sequence) {
         }
         return;
     };
+    let travel = tracked.records.iter().rev().find_map(|record| record.outcome.as_ref().ok()).map(|last| last.travel);
+    let with_pose = trajectory(&tracked.records).len();
+    let text = words::summary(
+        with_pose,
+        tracked.records.len(),
+        travel.map(|travel| [travel.distance_mm / 1000.0, travel.turn_rad.to_degrees()]),
+        tracked.evaluation.map(|found| [found.ate_rmse_mm, found.rpe_translation_rmse_mm]),
+    );
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        files(ui, tracked);
+        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+            let words = theme::dim(ui, text);
+            let response = ui.add(Label::new(words).truncate());
+            if !sequence.notes.is_empty() {
+                let notes: Vec<String> = sequence.notes.iter().map(ToString::to_string).collect();
+                response.on_hover_text(notes.join("\n"));
+            }
+        });
+    });
+}
+
+/// The files that can be had of it.
+fn files(ui: &mut Ui, tracked: &Tracked) {
     ui.menu_button(words::SAVE, |ui| {
         let save = |ui: &mut Ui, label: &str, name: &str, contents: &dyn Fn() -> String| {
             if ui.button(label).clicked() {
@@ -311,24 +331,13 @@ fn summary(ui: &mut Ui, workbench: &Workbench, sequence: &Sequence) {
         });
         save(ui, words::SAVE_FRAMES, "frames.csv", &|| frames_csv(&tracked.records));
     });
-    let travel = tracked.records.iter().rev().find_map(|record| record.outcome.as_ref().ok()).map(|last| last.travel);
-    let with_pose = trajectory(&tracked.records).len();
-    let text = words::summary(
-        with_pose,
-        tracked.records.len(),
-        travel.map(|travel| [travel.distance_mm / 1000.0, travel.turn_rad.to_degrees()]),
-        tracked.evaluation.map(|found| [found.ate_rmse_mm, found.rpe_translation_rmse_mm]),
-    );
-    let response = ui.label(theme::dim(ui, text));
-    if !sequence.notes.is_empty() {
-        let notes: Vec<String> = sequence.notes.iter().map(ToString::to_string).collect();
-        response.on_hover_text(notes.join("\n"));
-    }
 }
 
 fn picture_card(ui: &mut Ui, height: f32, sequence: &Sequence, bench: &SequenceBench, state: &mut SequenceState) {
     let mut shown = state.shown;
     let tabs = |ui: &mut Ui| {
+        ui.spacing_mut().button_padding.x = 6.0;
+        ui.spacing_mut().item_spacing.x = 2.0;
         // From right to left.
         for kind in Shown::ALL.into_iter().rev() {
             ui.selectable_value(&mut shown, kind, kind.name()).on_hover_text(kind.hint());
@@ -407,7 +416,7 @@ fn curve(name: &'static str, color: egui::Color32, values: &Values) -> Curve {
 }
 
 fn travel_card(ui: &mut Ui, height: f32, model: &Model, state: &mut SequenceState) {
-    let truth = theme::palette(ui).text_dim;
+    let truth = theme::palette(ui).text;
     let with_truth = |found: &Values, true_values: &Values| {
         let mut curves = vec![curve(words::TRACKED_WAY, theme::INLIER, found)];
         if !true_values.is_empty() {
@@ -438,8 +447,8 @@ fn effort_card(ui: &mut Ui, height: f32, model: &Model, state: &mut SequenceStat
     let palette = theme::palette(ui);
     let counts = vec![
         curve(words::SEEN, palette.text_dim, &model.features),
-        curve(words::MATCHED, theme::OUTLIER, &model.matches),
-        curve(words::AGREEING, theme::INLIER, &model.inliers),
+        curve(words::MATCHED, palette.accent, &model.matches),
+        curve(words::AGREEING, palette.good, &model.inliers),
     ];
     let times = vec![curve(words::MOTION_TIME, palette.accent, &model.motion_ms)];
     two_curves(
@@ -482,8 +491,16 @@ fn two_curves(
                 let half = ui.available_height() / 2.0;
                 let mut clicked_s = None;
                 for (idx, (id, y_title, decimals, curves, is_from_zero)) in plotted.into_iter().enumerate() {
-                    let plot =
-                        OverTime { id, y_title, decimals, curves, lost_s: &model.lost_s, current_s, is_from_zero };
+                    let plot = OverTime {
+                        id,
+                        y_title,
+                        decimals,
+                        curves,
+                        lost_s: &model.lost_s,
+                        current_s,
+                        is_from_zero,
+                        has_legend: idx == 0,
+                    };
                     let found = plot.show(ui, half, idx == 0, &mut state.are_curves_fitted);
                     clicked_s = clicked_s.or(found);
                 }

@@ -50,6 +50,8 @@ impl Default for Eye {
 const KEY_STEP: f32 = 12.0;
 /// Room around the way, points.
 const ROOM_AROUND: Vec2 = vec2(36.0, 40.0);
+/// The part of a plan's extent that is left free around the way.
+const ROOM_FOR_CAMERA: f64 = 0.06;
 /// Shorter ways are not enlarged beyond this, m.
 const LEAST_REACH_M: f64 = 1e-3;
 
@@ -67,7 +69,7 @@ fn legend(ui: &mut Ui, ways: &Ways) {
     let mut entries =
         vec![LegendEntry { glyph: LegendGlyph::Line, color: theme::INLIER, text: words::TRACKED_WAY.to_owned() }];
     if !ways.truth.is_empty() {
-        let color = theme::palette(ui).text_dim;
+        let color = theme::palette(ui).text;
         entries.push(LegendEntry { glyph: LegendGlyph::Dashed, color, text: words::TRUE_WAY.to_owned() });
     }
     charts::legend(ui, &entries);
@@ -78,6 +80,11 @@ pub(super) fn plan(ui: &mut Ui, ways: &Ways, is_fitted: &mut bool) -> Option<usi
     legend(ui, ways);
     let mut extent = Extent::NOTHING;
     for [x, y] in ways.tracked.iter().flatten().chain(&ways.truth).map(|point| in_plan(*point)) {
+        extent.include(x, y);
+    }
+    // Room for the camera beyond the ends of the way.
+    let margin = ROOM_FOR_CAMERA * (extent.x[1] - extent.x[0]).max(extent.y[1] - extent.y[0]).max(LEAST_REACH_M);
+    for (x, y) in [(extent.x[0] - margin, extent.y[0] - margin), (extent.x[1] + margin, extent.y[1] + margin)] {
         extent.include(x, y);
     }
     let height = ui.available_height();
@@ -237,12 +244,13 @@ fn paint_floor(painter: &Painter, view: &View, color: Color32) {
 
 fn paint_ways(ui: &Ui, painter: &Painter, ways: &Ways, at: &impl Fn(Vec3) -> Pos2) {
     let palette = theme::palette(ui);
-    let truth: Vec<Pos2> = ways.truth.iter().map(|point| at(*point)).collect();
-    charts::dashed_line(painter, &truth, Stroke::new(1.5, palette.text_dim));
     for stretch in &ways.tracked {
         let points: Vec<Pos2> = stretch.iter().map(|point| at(*point)).collect();
-        painter.add(Shape::line(points, Stroke::new(2.0, theme::INLIER)));
+        painter.add(Shape::line(points, Stroke::new(3.0, theme::INLIER)));
     }
+    // On top, so that it is seen where both agree.
+    let truth: Vec<Pos2> = ways.truth.iter().map(|point| at(*point)).collect();
+    charts::dashed_line(painter, &truth, Stroke::new(1.2, palette.text));
     if let Some(start) = ways.tracked.first().and_then(|stretch| stretch.first()) {
         let ring = Stroke::new(1.5, theme::INLIER);
         marker(painter, MarkerShape::Circle, at(*start), 4.0, palette.surface, ring);

@@ -80,7 +80,9 @@ impl Shell {
             Purpose::ExportPoses => folder.join(self.suggested_csv()),
             Purpose::ExportPoints => folder.join(self.suggested_ply()),
             Purpose::ReportFolder => folder.join(self.suggested_report()),
-            Purpose::ToolFrame | Purpose::Picture | Purpose::SequenceFile => folder.join(self.to_write.as_ref().map_or("", |file| &file.name)),
+            Purpose::ToolFrame | Purpose::Picture | Purpose::SequenceFile => {
+                folder.join(self.to_write.as_ref().map_or("", |file| &file.name))
+            }
             _ => folder,
         };
         path.display().to_string()
