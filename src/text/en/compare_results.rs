@@ -382,7 +382,7 @@ pub const HISTORY_REMARKS: &str = "Jumps, trends, and files that were left out";
 /// Title of the plot.
 pub const DRIFT_PLOT: &str = "Way from the first calibration";
 /// What is drawn.
-pub const QUANTITIES: [&str; 3] = ["workspace point", "sensor's origin", "rotation"];
+pub const QUANTITIES: [&str; 3] = ["workspace point", "origin", "rotation"];
 /// Axis of lengths.
 pub const WAY_AXIS: &str = "from the first / mm";
 /// Axis of angles.

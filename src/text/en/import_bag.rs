@@ -73,7 +73,7 @@ pub const fn gives(kind: Option<MessageKind>) -> &'static str {
 /// A topic in a line.
 #[must_use]
 pub fn topic_line(topic: &Topic) -> String {
-    let Topic { name, type_name, kind, num_messages } = topic;
+    let Topic { name, type_name, kind, num_messages, .. } = topic;
     format!("  {name}  {type_name}  {num_messages}  {}\n", gives(*kind))
 }
 

@@ -2,7 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use egui::{Align2, Button, Color32, Frame, Id, Key, Margin, RichText, Stroke, TextEdit, Ui, vec2};
+use egui::{
+    Align, Align2, Button, Color32, Frame, Id, Key, Layout, Margin, RichText, Sense, Stroke, TextEdit, Ui, UiBuilder,
+    vec2,
+};
 use egui_plot::MarkerShape;
 
 use crate::app::Command;
@@ -140,13 +143,16 @@ fn controls(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut CompareResu
     }
 }
 
-/// A row with a label, and what stands beside it in the middle of its height.
+/// A row with a label and a field, and what stands beside it in the middle of its height.
 pub(super) fn row<R>(ui: &mut Ui, label: &str, contents: impl FnOnce(&mut Ui) -> R) -> R {
-    let size = vec2(ui.available_width(), FIELD_HEIGHT);
-    ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
-        let (rect, _) = ui.allocate_exact_size(vec2(LABEL_WIDTH, FIELD_HEIGHT), egui::Sense::hover());
-        let mut left = ui
-            .new_child(egui::UiBuilder::new().max_rect(rect).layout(egui::Layout::left_to_right(egui::Align::Center)));
+    labelled(ui, label, FIELD_HEIGHT, contents)
+}
+
+fn labelled<R>(ui: &mut Ui, label: &str, height: f32, contents: impl FnOnce(&mut Ui) -> R) -> R {
+    let layout = Layout::left_to_right(Align::Center);
+    ui.allocate_ui_with_layout(vec2(ui.available_width(), height), layout, |ui| {
+        let (rect, _) = ui.allocate_exact_size(vec2(LABEL_WIDTH, height), Sense::hover());
+        let mut left = ui.new_child(UiBuilder::new().max_rect(rect).layout(layout));
         left.label(theme::dim(&left, label));
         contents(ui)
     })
@@ -236,12 +242,8 @@ fn table(ui: &mut Ui, comparison: &Comparison, is_old: bool) {
         Frame::new().inner_margin(Margin { left: 12, right: 12, top: 6, bottom: 4 }).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 2.0;
             for (label, calibration) in [(words::TO, &comparison.to), (words::FROM, &comparison.from)] {
-                ui.horizontal(|ui| {
-                    ui.add_sized(
-                        vec2(LABEL_WIDTH, 18.0),
-                        egui::Label::new(theme::dim(ui, label)).halign(egui::Align::Min),
-                    );
-                    let date = calibration.date().map_or_else(String::new, |date| format!(" · {date}"));
+                let date = calibration.date().map_or_else(String::new, |date| format!(" · {date}"));
+                labelled(ui, label, 20.0, |ui| {
                     ui.add(egui::Label::new(format!("{}{date}", calibration.name)).truncate());
                 });
             }
@@ -264,7 +266,9 @@ pub(super) fn marked(ui: &mut Ui, sign: &str, color: Color32, sentence: &str) {
 
 fn rows(ui: &mut Ui, comparison: &Comparison) {
     let width = ui.available_width();
-    let widths = PARTS.map(|part| part * width);
+    let mut widths = PARTS.map(|part| part * width);
+    // As far from the border as the title.
+    widths[4] -= 6.0;
     let is_wide = width >= ONE_LINE_FROM;
     let mut head = RowCells::new(ui, theme::ROW_HEIGHT);
     for (idx, (width, name)) in widths.iter().zip(words::DIFFERENCE_COLUMNS).enumerate() {
@@ -281,7 +285,7 @@ fn rows(ui: &mut Ui, comparison: &Comparison) {
             with_std(&mut cells, widths[1 + axis], &text, is_wide);
         }
         let color = theme::palette(cells.ui()).text;
-        cells.word(widths[4] - 6.0, &format!("{:.decimals$}", value.norm()), color);
+        cells.word(widths[4], &format!("{:.decimals$}", value.norm()), color);
     };
     line(words::TRANSLATION, difference.translation_mm, difference.translation_std_mm, 4);
     line(words::ROTATION, degrees(difference.rotation_rad), difference.rotation_std_rad.map(degrees), 5);

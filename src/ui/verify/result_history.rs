@@ -18,8 +18,10 @@ use crate::ui::{PanelContext, theme, widgets};
 
 use super::compare_results::{AXIS_MARKERS, choose_button, marked, path_field, refused, row};
 
-/// Width of what stands beside the field of the folder, points.
-const BUTTONS_WIDTH: f32 = 236.0;
+/// Width of the buttons beside the field of the folder, points.
+const BUTTONS_WIDTH: f32 = 180.0;
+/// Width of what stands beside them while a folder is read.
+const PROGRESS_WIDTH: f32 = 140.0;
 /// Least and most height of the plot's card, points.
 const PLOT_HEIGHTS: [f32; 2] = [260.0, 360.0];
 /// Height that the table and the sentences below the plot take at least, points.
@@ -81,7 +83,8 @@ fn controls(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut ResultHisto
     let mut is_asked = false;
     row(ui, words::FOLDER, |ui| {
         ui.spacing_mut().item_spacing.x = 8.0;
-        let width = ui.available_width() - BUTTONS_WIDTH;
+        let beside = if study.is_running() { PROGRESS_WIDTH } else { 0.0 };
+        let width = ui.available_width() - BUTTONS_WIDTH - beside;
         is_asked = path_field(ui, words::FOLDER_FIELD, words::FOLDER_EXAMPLE, &mut state.folder, width);
         if choose_button(ui, words::CHOOSE_FOLDER) {
             context.actions.push(Action::ChooseResultFolder);
