@@ -289,7 +289,7 @@ pub const POINTS_FIELD: &str = "Points in the sensor frame to compare at, mm";
 /// In the field.
 pub const POINTS_EXAMPLE: &str = "points in the sensor frame / mm: 0,0,80; 10,0,60";
 /// Button.
-pub const COMPARE_BUTTON: &str = "Compare";
+pub const COMPARE_BUTTON: &str = "Compare these";
 /// Why it is disabled.
 pub const SIDE_MISSING: &str = "Choose two calibrations first";
 /// Where nothing was compared yet.

@@ -8,7 +8,7 @@ use super::messages::{TimedPose, TimedTransform};
 const MAX_TRANSFORMS: usize = 3_000_000;
 /// Between two transforms that are at most so many times as far apart as poses and profiles may be, a frame is believed
 /// to have moved steadily.
-pub(super) const MAX_GAP: u64 = 4;
+pub(super) const MAX_GAP: u32 = 4;
 /// Frames between a frame and the root; more are a circle.
 const MAX_DEPTH: usize = 64;
 
@@ -219,7 +219,7 @@ impl<'e> Walker<'e> {
             _ if self.edge.is_static => poses.last().map(|pose| TimedPose { time_ns, ..*pose }),
             (_, Some(now)) if now.time_ns == time_ns => Some(*now),
             (Some(before), Some(after))
-                if before.time_ns.abs_diff(after.time_ns) <= tolerance_ns.saturating_mul(MAX_GAP) =>
+                if before.time_ns.abs_diff(after.time_ns) <= tolerance_ns.saturating_mul(u64::from(MAX_GAP)) =>
             {
                 Some(before.towards(after, time_ns))
             }

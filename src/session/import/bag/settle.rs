@@ -6,6 +6,7 @@ use nalgebra::{Quaternion, UnitQuaternion};
 
 use crate::geometry::{Vec3, stats};
 
+use super::frames::MAX_GAP;
 use super::messages::TimedPose;
 
 impl TimedPose {
@@ -66,14 +67,13 @@ pub(super) struct Stillness {
 pub(super) fn longest_gap_ns(poses: &[TimedPose], tolerance_ns: i64) -> i64 {
     /// Times between poses that are looked at.
     const MOST: usize = 10_000;
-    /// As in frames: a few poses may get lost.
-    const TIMES: i64 = super::frames::MAX_GAP as i64;
     let every = poses.len() / MOST + 1;
     let mut between: Vec<i64> =
         poses.windows(2).step_by(every).map(|pair| pair[1].time_ns.saturating_sub(pair[0].time_ns)).collect();
     between.sort_unstable();
     let usual_ns = between.get(between.len() / 2).copied().unwrap_or_default();
-    TIMES.saturating_mul(tolerance_ns.max(usual_ns))
+    // As in frames: a few poses may get lost.
+    i64::from(MAX_GAP).saturating_mul(tolerance_ns.max(usual_ns))
 }
 
 /// A stay of the robot.
