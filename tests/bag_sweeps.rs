@@ -173,7 +173,7 @@ fn report(imported: &Imported) -> &BagReport {
 fn best(imported: Imported, radius_mm: f64) -> Option<Solution> {
     let session = imported.into_session("bag".to_owned(), Target::ball(radius_mm)).expect("a session");
     let measured = session::measure(&session, None, &mut Unwatched).expect("not cancelled");
-    let problem = session::problem(&session, &measured)?;
+    let problem = session::problem(&session, &measured).ok()?;
     let results = problem.solve_all(problem.methods(), &mut Unwatched).expect("not cancelled");
     best_available(&results).cloned()
 }
