@@ -209,7 +209,7 @@ pub fn compared(from: Compared, to: Compared, given: &[Vec3]) -> Result<Comparis
     let mut stated = [from.stated.clone(), to.stated.clone()];
     if shared != Shared::Nothing {
         // Added as if they were independent, the covariances would call anything chance.
-        stated.iter_mut().for_each(|stated| stated.covariance = None);
+        stated = stated.map(|stated| Stated { covariance: None, ..stated });
     }
     let [first, second] = &stated;
     let mut difference = difference(first, second);

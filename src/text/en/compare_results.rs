@@ -331,7 +331,7 @@ pub fn point_row(point: Vec3) -> String {
 /// The same in the plot.
 #[must_use]
 pub fn point_place(point: Vec3) -> String {
-    let [x, y, z] = [point.x, point.y, point.z].map(|part| plain(part));
+    let [x, y, z] = [point.x, point.y, point.z].map(plain);
     format!("({x}, {y}, {z})")
 }
 

@@ -40,8 +40,6 @@ pub const TOPICS: &str = "What the bag holds, and what becomes of it";
 pub const TOPIC_COLUMNS: [&str; 6] = ["topic", "type", "messages", "first / s", "last / s", "gives"];
 /// What the times are counted from.
 pub const TIMES_FROM: &str = "seconds from the beginning of the recording";
-/// A topic that is read now.
-pub const IN_USE: &str = "in use";
 /// Why a number is not taken.
 pub const NEGATIVE: &str = "type a number from 0 on";
 /// Where a bag has no such topic.
@@ -119,6 +117,13 @@ pub const fn gives(kind: Option<MessageKind>) -> &'static str {
         Some(MessageKind::LaserScan | MessageKind::PointCloud) => "profiles",
         None => "not read",
     }
+}
+
+/// The same in a table, and whether it is in use.
+#[must_use]
+pub fn gives_in_table(kind: Option<MessageKind>, is_in_use: bool) -> String {
+    let gives = if kind == Some(MessageKind::Transforms) { "frames" } else { gives(kind) };
+    if is_in_use { format!("{gives}, in use") } else { gives.to_owned() }
 }
 
 /// A topic in a line.

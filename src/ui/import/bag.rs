@@ -209,8 +209,7 @@ fn topic_row(ui: &mut Ui, topic: &Topic, start_ns: Option<i64>, widths: &[f32; 6
         let time = topic.recorded_ns.zip(start_ns).map(|(times, start_ns)| words::seconds(times[end], start_ns));
         cells.word(*width, time.as_deref().unwrap_or("–"), color);
     }
-    let gives = words::gives(topic.kind);
-    cells.text(widths[5], &if is_in_use { format!("{gives}, {}", words::IN_USE) } else { gives.to_owned() });
+    cells.text(widths[5], &words::gives_in_table(topic.kind, is_in_use));
 }
 
 /// The list of frames, each with its parent; answers another one that was picked.

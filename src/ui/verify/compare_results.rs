@@ -31,6 +31,8 @@ const BUTTON_WIDTH: f32 = 84.0;
 const FIELD_HEIGHT: f32 = 30.0;
 /// Parts of a row of the table: what, along x, y and z, in all.
 const PARTS: [f32; 5] = [0.26, 0.19, 0.19, 0.19, 0.17];
+/// The same where a value and its σ stand in two lines.
+const NARROW_PARTS: [f32; 5] = [0.3, 0.18, 0.18, 0.18, 0.16];
 /// From this width, points, a value and its σ stand in one line.
 const ONE_LINE_FROM: f32 = 700.0;
 /// Least height of the plot's card, points.
@@ -266,10 +268,10 @@ pub(super) fn marked(ui: &mut Ui, sign: &str, color: Color32, sentence: &str) {
 
 fn rows(ui: &mut Ui, comparison: &Comparison) {
     let width = ui.available_width();
-    let mut widths = PARTS.map(|part| part * width);
+    let is_wide = width >= ONE_LINE_FROM;
+    let mut widths = if is_wide { PARTS } else { NARROW_PARTS }.map(|part| part * width);
     // As far from the border as the title.
     widths[4] -= 6.0;
-    let is_wide = width >= ONE_LINE_FROM;
     let mut head = RowCells::new(ui, theme::ROW_HEIGHT);
     for (idx, (width, name)) in widths.iter().zip(words::DIFFERENCE_COLUMNS).enumerate() {
         head.head(*width, name, if idx == 0 { Align2::LEFT_CENTER } else { Align2::RIGHT_CENTER });

@@ -8,7 +8,7 @@ use crate::app::workbench::comparing::FolderRead;
 use crate::app::{Command, Progress};
 use crate::report::result_history::said::{history_rows, history_sentences, verdict};
 use crate::report::result_history::series::{Quantity, Series, series};
-use crate::report::result_history::{Course, History, Order};
+use crate::report::result_history::{Compared, Course, History, Order};
 use crate::text::compare_results as words;
 use crate::ui::actions::Action;
 use crate::ui::charts::{self, Chart, Extent, LegendEntry, LegendGlyph};
@@ -196,7 +196,7 @@ fn drift(ui: &mut Ui, history: &History, quantity: Quantity, is_fitted: &mut boo
             extent.include(0.0, y + std.unwrap_or_default());
         }
     }
-    let x_title = match (history.order, history.calibrations.first().and_then(|first| first.date())) {
+    let x_title = match (history.order, history.calibrations.first().and_then(Compared::date)) {
         (Order::Dates, Some(first)) => words::days_axis(&first),
         _ => words::NUMBER_AXIS.to_owned(),
     };
@@ -251,7 +251,7 @@ fn table(ui: &mut Ui, history: &History) {
             let width = ui.available_width();
             // A narrow table names a calibration by its date where all have one, and leaves out the turn.
             let is_wide = width >= ALL_COLUMNS_FROM;
-            let first = if history.order == Order::Dates { 1 } else { 0 };
+            let first = usize::from(history.order == Order::Dates);
             let columns: Vec<(usize, f32)> = if is_wide {
                 vec![(0, 0.27), (1, 0.11), (2, 0.1), (3, 0.1), (4, 0.1), (5, 0.1), (6, 0.1), (7, 0.12)]
             } else {

@@ -27,6 +27,8 @@ const MAX_BAG_POSES: usize = 3_000_000;
 const MAX_POINTS: usize = 16_000_000;
 /// Profiles of one stay that are kept for their median.
 const MAX_OF_A_STAY: usize = 25;
+/// Numbers of the preview are rounded to a part of this: a tenth of a micrometre in metres. What is read is not.
+const SHOWN: f64 = 1e7;
 /// Captures that follow each other within this are of one station, degrees: a sweep keeps its orientation.
 const ONE_ORIENTATION_DEG: f64 = 0.5;
 /// A robot that steps along a line keeps to it and to its orientation within these.
@@ -96,7 +98,7 @@ pub(in crate::session::import) fn read(
         let [i, j, k, w] = pose.rotation.coords.into();
         let numbers = [x, y, z, i, j, k, w];
         if preview.rows.len() < MAX_PREVIEW_ROWS {
-            show(preview, idx + 1, &label, &numbers);
+            show(preview, idx + 1, &label, &numbers.map(|number| (number * SHOWN).round() / SHOWN));
             if let Some((_, cells)) = preview.rows.last_mut() {
                 cells.push(profile.as_ref().map_or(0, |profile| profile.valid_points().count()).to_string());
             }
