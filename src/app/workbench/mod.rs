@@ -1,6 +1,7 @@
 //! Document, results, jobs and notices, changed only by commands and finished jobs.
 
 mod cell;
+pub mod comparing;
 mod edits;
 mod exports;
 mod files;
@@ -28,6 +29,7 @@ use super::study::Study;
 use super::{Command, Document};
 
 use self::cell::LiveCell;
+use self::comparing::{Compared, FolderRead};
 use self::exports::Exported;
 use self::files::{Loaded, Look, Save, SaveOutcome};
 pub use self::imports::ImportDraft;
@@ -111,6 +113,8 @@ pub struct Workbench {
     /// Calibrations from elsewhere, judged along with the session's own.
     given: Vec<Calibration>,
     adding: Slot<Added>,
+    comparison: Study<Compared>,
+    result_history: Study<FolderRead>,
     imports: Imports,
     exporting: Slot<Exported>,
     scans: Scans,
@@ -151,6 +155,8 @@ impl Workbench {
             verifies_later: false,
             given: Vec::new(),
             adding: Slot::default(),
+            comparison: Study::default(),
+            result_history: Study::default(),
             imports: Imports::default(),
             exporting: Slot::default(),
             scans: Scans::default(),
@@ -270,6 +276,8 @@ impl Workbench {
             || self.bootstrap.is_running()
             || self.verification.is_running()
             || self.adding.is_running()
+            || self.comparison.is_running()
+            || self.result_history.is_running()
             || self.imports.is_busy()
             || self.exporting.is_running()
             || self.scans.is_busy()
@@ -325,6 +333,10 @@ impl Workbench {
             Command::AddFurther(path) => self.start_adding_further(path),
             Command::GiveCalibration(calibration) => self.give_calibration(*calibration),
             Command::WithdrawCalibration(name) => self.withdraw_calibration(&name),
+            Command::CompareCalibrations(sides) => self.compare_calibrations(*sides),
+            Command::CancelComparison => self.comparison.cancel(),
+            Command::ReadResultHistory(folder) => self.read_result_history(folder),
+            Command::CancelResultHistory => self.result_history.cancel(),
             Command::Scan(command) => self.command_scans(*command),
             Command::Cell(command) => self.command_cell(*command),
             Command::GatherReport => self.gather_report(),
@@ -367,6 +379,8 @@ impl Workbench {
             ("the bootstrap", self.bootstrap.poll()),
             ("verifying", self.verification.poll()),
             ("gathering the report", self.report.poll()),
+            ("comparing", self.comparison.poll()),
+            ("reading the history", self.result_history.poll()),
         ] {
             let Some(ended) = ended else { continue };
             changed = true;
