@@ -11,7 +11,7 @@ use crate::report::figure::{Extent, Figure};
 use crate::session::{Reading, Session, Target};
 use crate::text::figures as words;
 
-use super::sheet::Sheet;
+use super::sheet::{HALF_PAGE, Sheet};
 use super::space::{Scene, Triad};
 
 /// More stations than this are not all named.
@@ -62,7 +62,7 @@ fn sketch(evidence: &Evidence) -> Option<Figure> {
     if !is_fixed {
         mark_target(&mut scene, session, solution, None);
     }
-    let mut sheet = Sheet::new(330.0);
+    let mut sheet = Sheet::new(HALF_PAGE);
     let legend = [
         Entry::new(Sign::Line(Dash::Solid), palette::AXES[0], "x"),
         Entry::new(Sign::Line(Dash::Solid), palette::AXES[1], "y"),
