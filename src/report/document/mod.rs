@@ -9,7 +9,7 @@ use crate::text::report as words;
 use super::evidence::Evidence;
 use super::figure::figures_of;
 
-pub use model::{Block, Cell, Column, Document, Fact, Finding, Section, Table, Verdict, typeset};
+pub use model::{Block, Cell, Column, Document, Fact, Finding, Section, Table, Verdict, typeset, typeset_numbers};
 pub use section::{Options, SectionId};
 pub use sections::tool_frames::{Export, exports};
 
