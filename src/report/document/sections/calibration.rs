@@ -17,7 +17,7 @@ const ROTATION_DECIMALS: usize = 6;
 fn rotation_decimals(solution: &Solution) -> usize {
     let known = solution.uncertainty.as_ref();
     let std_rad = known.map(|known| (known.rotation_covariance().trace().max(0.0) / 3.0).sqrt());
-    std_rad.map_or(ROTATION_DECIMALS, |std_rad| (decimals_for(Some(std_rad)) + 1).min(ROTATION_DECIMALS))
+    std_rad.map_or(ROTATION_DECIMALS, |std_rad| (decimals_for(Some(std_rad)) + 1).clamp(3, ROTATION_DECIMALS))
 }
 
 pub(in crate::report::document) fn blocks(evidence: &Evidence) -> Vec<Block> {

@@ -148,7 +148,8 @@ pub const fn meaning(mount: Mount) -> &'static str {
 /// The sensor's frame in words.
 pub const SENSOR_FRAME: &str = "Sensor frame: the laser plane is y = 0, x runs across the line, z along the range axis, y completes a right-handed frame. Lengths are millimetres.";
 /// How many digits are printed.
-pub const DIGITS: &str = "Figures end with the second digit of their σ, those of R and of the quaternion one digit later, as they make a rotation only together. The texts for the controller, the CSV files and result.json have more digits: take them from there.";
+pub const DIGITS: &str =
+    "Figures end with the second digit of their σ, R and quaternion one digit later; result.json has all digits.";
 /// Name of the transform.
 #[must_use]
 pub const fn transform_name(mount: Mount) -> &'static str {
@@ -337,6 +338,15 @@ pub fn result_file(result: &str, tables: &str) -> String {
     format!("{result} (with covariances), and each table as CSV in {tables}/")
 }
 
+/// Of a file that is another by now.
+pub const CHANGED_SINCE: &str = "changed since it was read; the checksum is of what was read";
+/// Of a file that cannot be read any more.
+pub const GONE_SINCE: &str = "cannot be read any more; the checksum is of what was read";
+/// Of a session that no file holds as it is.
+pub const NOT_SAVED: &str = "not saved; the checksum is of the file that “Save” would write";
+/// Of a calibration that was given as figures.
+pub const PASTED: &str =
+    "a calibration that was pasted; the checksum is of its 16 figures, row by row, as JSON prints them";
 /// The report was made of a session that is in no file.
 pub const NO_FILE: &str = "The session was in no file when the report was made.";
 

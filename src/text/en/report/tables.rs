@@ -151,7 +151,7 @@ pub fn truth_line(point_mm: &str, rotation_deg: &str) -> String {
 }
 
 /// Name of a fact.
-pub const LEAVE_ONE_OUT: &str = "Left out: each station predicted by the others";
+pub const LEAVE_ONE_OUT: &str = "Left out, predicted by others";
 
 /// Distances of stations, left out or in sample.
 #[must_use]
@@ -167,7 +167,7 @@ pub fn distances_line(target: &Target, rms_mm: &str, max_mm: &str) -> String {
 /// There are too few stations for it.
 pub const NO_LEAVE_ONE_OUT: &str = "too few stations to leave one out";
 /// Name of a fact.
-pub const IN_SAMPLE: &str = "In sample: each station about all";
+pub const IN_SAMPLE: &str = "In sample";
 /// Name of a fact.
 pub const ROTATION_SPAN: &str = "Largest rotation between two poses";
 
