@@ -294,3 +294,20 @@ pub fn typeset_numbers(sentence: &str) -> String {
 pub fn typeset(number: &str) -> String {
     number.replace('-', "−")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn minus_signs_are_true_and_hyphens_stay_hyphens() {
+        for (sentence, expected) in [
+            ("off by -0.5 mm", "off by −0.5 mm"),
+            ("weakest along (-0.2, -0.4, 0.9)", "weakest along (−0.2, −0.4, 0.9)"),
+            ("left-out hand-eye 5-10", "left-out hand-eye 5-10"),
+            ("2026-11-22 - -x", "2026-11-22 - -x"),
+        ] {
+            assert_eq!(typeset_numbers(sentence), expected);
+        }
+    }
+}
