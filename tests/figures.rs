@@ -168,7 +168,9 @@ fn every_sample_has_the_figures_that_its_data_allow() {
             "plate.json" => {
                 has(&["setup", "trajectory", "profile", "errors", "scatter", "influence", "halves", "distances"]);
             }
-            "tip.json" => has(&["setup", "trajectory", "profile", "profiles-1", "profiles-2", "errors", "scatter", "stability"]),
+            "tip.json" => {
+                has(&["setup", "trajectory", "profile", "profiles-1", "profiles-2", "errors", "scatter", "stability"]);
+            }
             "workpiece.json" => {
                 has(&["trajectory", "part-1-plane-distances", "part-2-plane-distances", "part-2-teeth"]);
             }

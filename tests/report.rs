@@ -340,7 +340,7 @@ fn refusals_name_what_was_found_and_what_was_expected() {
         (vec!["report", tip], 2, "--out"),
         (vec!["report", tip, "--out", "out", "--section", "prices"], 2, "expected one of: verdict"),
         (vec!["report", tip, "--out", "out", "--section", "verdict", "--without", "setup"], 2, "cannot be used with"),
-        (vec!["report", tip, "--out", "file"], 2, "cannot make the folder file"),
+        (vec!["report", tip, "--out", "file"], 2, "file is a file, and a report needs a folder"),
     ] {
         let output = handeye(&arguments, folder.path());
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -429,6 +429,6 @@ fn rotations_have_the_digits_that_their_uncertainty_allows() {
         );
         cell.text.split_once('.').map_or(0, |(_, decimals)| decimals.len())
     };
-    // σ of 0.02°, and of a degree.
+    // σ of 0.03°, and of half a degree.
     assert_eq!((decimals("clean-sweeps.json"), decimals("lin-mu-2019-table-1.json")), (6, 4));
 }

@@ -176,7 +176,7 @@ pub fn halves_alt(title: &str, median_mm: &str, expected_mm: &str) -> String {
 }
 
 fn without(left_out: &[&str]) -> String {
-    if left_out.is_empty() { String::new() } else { format!("; farther off and not shown: {}", left_out.join(", ")) }
+    if left_out.is_empty() { String::new() } else { format!("; farther off and not shown: {}", left_out.join(" · ")) }
 }
 
 /// Caption of distances to lines and plane.
