@@ -172,6 +172,8 @@ pub enum Command {
     GatherReport,
     /// Stops that; what was gathered last stays.
     CancelReport,
+    /// Opens the page of the report that was written last in a browser.
+    OpenReport,
     /// Writes the report, as a page and as Markdown, with its tables, figures and exports.
     WriteReport {
         /// The folder, made if it is missing; files of a report that is there are replaced.

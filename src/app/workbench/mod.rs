@@ -19,6 +19,7 @@ use std::sync::Arc;
 use crate::calibrate::validation::Bootstrap;
 use crate::diagnose::{Diagnosis, ReadingFit};
 use crate::plan::{Limits, Plan, PlanRefusal};
+use crate::report::open::NotOpened;
 use crate::session::edit::CellValue;
 use crate::verify::{Calibration, Verification};
 use crate::watch::Cancelled;
@@ -120,6 +121,7 @@ pub struct Workbench {
     scans: Scans,
     report: Study<Arc<Gathered>>,
     reporting: Slot<(Option<u64>, Reported)>,
+    opening: Slot<Result<(), NotOpened>>,
     written_report: Option<PathBuf>,
     cell: LiveCell,
 }
@@ -162,6 +164,7 @@ impl Workbench {
             scans: Scans::default(),
             report: Study::default(),
             reporting: Slot::default(),
+            opening: Slot::default(),
             written_report: None,
             cell: LiveCell::default(),
         }
@@ -283,6 +286,7 @@ impl Workbench {
             || self.scans.is_busy()
             || self.report.is_running()
             || self.reporting.is_running()
+            || self.opening.is_running()
     }
 
     /// Carries out one command.
@@ -341,6 +345,7 @@ impl Workbench {
             Command::Cell(command) => self.command_cell(*command),
             Command::GatherReport => self.gather_report(),
             Command::CancelReport => self.report.cancel(),
+            Command::OpenReport => self.open_report(),
             Command::WriteReport { folder, options } => self.write_report(folder, *options),
             Command::Tell(kind, message) => self.notify(kind, message),
             Command::DismissNotice(id) => self.notices.retain(|notice| notice.id != id),
@@ -393,7 +398,7 @@ impl Workbench {
             self.take_added(outcome);
         }
         let imported = self.poll_imports();
-        let exported = self.poll_exports() | self.poll_scans() | self.poll_report();
+        let exported = self.poll_exports() | self.poll_scans() | self.poll_report() | self.poll_opening();
         // Last, as a run goes on once the results of its last station are there.
         let cell = self.poll_cell();
         self.verify_what_waited();
