@@ -111,7 +111,7 @@ fn folders_without_a_frame_are_refused_by_name() {
         ),
         (
             "no scale",
-            |walk| edit(&walk.join("camera.json"), |text| text.replace("5000", "-1")),
+            |walk| edit(&walk.join("camera.json"), |text| text.replace("\"depth_scale\": 5000", "\"depth_scale\": -1")),
             &["camera.json", "depth_scale", "-1"],
         ),
         (
