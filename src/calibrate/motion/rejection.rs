@@ -120,7 +120,6 @@ fn mirrored_tilt(seen: &Rigid) -> Rigid {
     let half_turn = exp(sight * std::f64::consts::PI);
     // The mirrored normal, with the smallest turn that leads there.
     let mirrored = half_turn * normal;
-    let mirrored = if mirrored.dot(&sight) * normal.dot(&sight) < 0.0 { -mirrored } else { mirrored };
     let turn = nalgebra::UnitQuaternion::rotation_between(&normal, &mirrored).unwrap_or(half_turn);
     Rigid::from_parts(seen.translation, turn * seen.rotation)
 }

@@ -319,8 +319,8 @@ impl Streams<'_> {
             translation_std_factor: noise.translation_factor.sqrt(),
         };
         let mut warnings = Vec::new();
-        if let Some((inverted, ratio)) = start::inverted(&all, start::typical_mm(&start.state, &all)) {
-            warnings.push(Warning::StreamInverted { inverted, ratio });
+        if let Some(ratio) = start::inverted(&all, start::typical_mm(&start.state, &all)) {
+            warnings.push(Warning::StreamInverted { ratio });
         }
         warnings.extend(rotation_warnings(span, &PoseGeometry::new(&of_flange)?));
         if !converged {

@@ -132,6 +132,7 @@ pub(super) fn recording(args: &SimulateArgs) -> Result<RoomRecording, SimulateRe
 
 /// What is asked for and belongs to other targets is a mistake somewhere else.
 fn refuse_without_effect(args: &SimulateArgs) -> Result<(), SimulateRefusal> {
+    let of_pose = args.pose.first_given();
     let (of_workpiece, of_ball, of_stations) = ("--target workpiece", "--target ball", "a target with stations");
     [
         ("--part", args.part.is_some(), of_workpiece),
@@ -153,6 +154,7 @@ fn refuse_without_effect(args: &SimulateArgs) -> Result<(), SimulateRefusal> {
         ("--bad-pose", args.bad_pose.is_some(), of_stations),
         ("--fault", args.fault.is_some(), of_ball),
         ("--decimals", args.decimals.is_some(), of_stations),
+        (of_pose.unwrap_or_default(), of_pose.is_some(), "--target pose"),
     ]
     .into_iter()
     .find(|(_, is_given, _)| *is_given)
