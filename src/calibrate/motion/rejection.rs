@@ -30,11 +30,11 @@ pub(super) struct Agreed<'a> {
 
 /// # Errors
 /// As [`settle`].
-pub(super) fn settle_on_agreeing<'a>(
-    measured: Vec<Measured<'a>>,
+pub(super) fn settle_on_agreeing(
+    measured: Vec<Measured<'_>>,
     start: MotionState,
     noise: MotionNoise,
-) -> Result<Agreed<'a>, SolveError> {
+) -> Result<Agreed<'_>, SolveError> {
     let poses: Vec<PosePair> = measured.iter().map(|measured| measured.pose).collect();
     if measured.len() < MIN_TO_REJECT {
         return Ok(Agreed { settled: settle(&measured, start, noise)?, used: measured, rejected: Vec::new() });
