@@ -98,7 +98,8 @@ impl MotionNoise {
         }
     }
 
-    const fn is_any_open(&self) -> bool {
+    /// Whether any of it is found from the residuals.
+    pub const fn is_any_open(&self) -> bool {
         self.robot_position.is_open
             || self.robot_orientation.is_open
             || self.target_translation.is_open

@@ -53,7 +53,7 @@ pub(super) fn settle_on_agreeing(
         start = settled.minimum.unknowns;
         let weighed = settled.noise.weighed(&measured, &start);
         let squares: Vec<f64> = weighed.iter().map(|pose| pose.information.square(&start.errors(pose))).collect();
-        let limit = limit(used.len(), stats::max(squares.iter().copied()));
+        let limit = limit(used.len(), settled.noise.is_any_open(), stats::max(squares.iter().copied()));
         let now: Vec<bool> = squares.iter().map(|square| *square <= limit).collect();
         if now == is_used {
             let rejected =
@@ -73,8 +73,8 @@ fn chosen<'a>(measured: &[Measured<'a>], is_used: &[bool]) -> Vec<Measured<'a>> 
 }
 
 /// The square from which on a pose is wrong; `most` is the largest there is.
-fn limit(num_used: usize, most: f64) -> f64 {
-    if most <= NEVER_BELOW {
+fn limit(num_used: usize, is_noise_found: bool, most: f64) -> f64 {
+    if most <= NEVER_BELOW || !is_noise_found {
         return NEVER_BELOW;
     }
     #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 poses")]
