@@ -16,6 +16,7 @@ pub struct FaultArg(RoomFault, Range<usize>);
 /// Arguments of `handeye simulate --target room`.
 #[derive(Clone, Debug, PartialEq, clap::Args)]
 #[command(next_help_heading = "Options of --target room")]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub struct RoomArgs {
     /// Number of frames; 120 if not given.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
