@@ -60,7 +60,13 @@ fn new_file(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
     let permissions = std::os::unix::fs::PermissionsExt::from_mode(0o666);
     #[cfg(unix)]
     builder.permissions(permissions);
-    builder.tempfile_in(folder)
+    // The name of the temporary file, which comes with the error, is nothing that anybody asked for.
+    builder.tempfile_in(folder).map_err(|error| io::Error::new(error.kind(), without_place(&error.to_string())))
+}
+
+/// What is wrong, of a sentence that ends with where.
+fn without_place(said: &str) -> String {
+    said.rsplit_once(" at path ").map_or(said, |(problem, _)| problem).to_owned()
 }
 
 /// Removes temporary files of ours that no program holds any more: it was killed while it saved.
@@ -88,6 +94,15 @@ fn is_abandoned(temporary: &Path) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_refusal_does_not_name_the_temporary_file() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let place = folder.path().join("missing").join("a.json");
+        let refused = replace(&place, |_| Ok::<(), io::Error>(())).expect_err("there is no such folder");
+        assert_eq!(refused.kind(), io::ErrorKind::NotFound);
+        assert!(!refused.to_string().contains(TEMPORARY_PREFIX), "{refused}");
+    }
 
     #[test]
     fn only_temporary_files_that_nobody_holds_are_swept_away() {

@@ -83,10 +83,44 @@ fn a_known_difference_is_found_in_the_flange_and_at_points() {
     assert_eq!(found["measured_points"].as_array().map(Vec::len), Some(2));
     let (status, said, _) = run(&["compare", &a, &b]);
     assert!(status == 0 && said.contains("a real difference") && said.contains("+0.300 ± 0.014"), "{said}");
-    let same = json_of(&["compare", &a, &a, "--json"]);
-    assert_eq!(same["difference"]["is_significant"], false);
-    let (_, said, _) = run(&["compare", &a, &a]);
+    // A measurement that differs by a tenth of a σ.
+    let near = write(folder.path(), "near.json", &result(AT + moved * 0.003, TURN, stds).to_string());
+    let (_, said, _) = run(&["compare", &a, &near]);
     assert!(said.contains("within what chance explains"), "{said}");
+}
+
+#[test]
+fn the_same_file_or_measurement_twice_is_no_evidence() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let stds = Some([STD_RAD, STD_MM]);
+    let mut file = result(AT, TURN, stds);
+    file["methods"][0]["stations"] = (0..5).map(|idx| json!({ "target_in_sensor_mm": [idx, 2.5, 58.0] })).collect();
+    let a = write(folder.path(), "a.json", &file.to_string());
+    let copy = write(folder.path(), "copy.json", &file.to_string());
+    // The same measurement, written another day.
+    file["date"] = json!("2026-05-01");
+    let again = write(folder.path(), "again.json", &file.to_string());
+    for (other, shared, words) in
+        [(&a, "file", "same file"), (&copy, "file", "same file"), (&again, "data", "same measurement")]
+    {
+        let found = json_of(&["compare", &a, other, "--json"]);
+        assert_eq!((&found["shared"], &found["difference"]["std_of"]), (&json!(shared), &json!("same data")));
+        assert_eq!(
+            (&found["difference"]["p_value"], &found["difference"]["is_significant"]),
+            (&Value::Null, &Value::Null)
+        );
+        let (_, said, _) = run(&["compare", &a, other]);
+        assert!(said.contains(words) && !said.contains("by chance") && !said.contains(" ± "), "{said}");
+    }
+    // A history counts it once.
+    let found = json_of(&["history", &folder.path().to_string_lossy(), "--json"]);
+    assert_eq!(found["calibrations"].as_array().map(Vec::len), Some(1), "{found}");
+    assert_eq!(found["left_out"].as_array().map(Vec::len), Some(2), "{found}");
+    // A session and its own result.
+    let sample = "sample_sessions/clean-sweeps.json";
+    let (_, result, _) = run(&["solve", sample, "--json"]);
+    let result = write(folder.path(), "result.json", &result);
+    assert_eq!(json_of(&["compare", sample, &result, "--json"])["shared"], "data");
 }
 
 #[test]
@@ -215,9 +249,14 @@ fn a_folder_over_months_shows_its_drift_and_its_jump() {
         found["trends"].as_array().expect("six")[1..].iter().all(|trend| trend["is_significant"] == false),
         "{found}"
     );
+    // The point moves as the sensor does where nothing turns.
+    let of_point = found["point_trends"].as_array().expect("three");
+    let verdicts: Vec<&Value> = of_point.iter().map(|trend| &trend["is_significant"]).collect();
+    assert_eq!((verdicts, &found["course"]), (vec![&json!(true), &json!(false), &json!(false)], &json!("moved")));
     assert_eq!(found["left_out"].as_array().map(Vec::len), Some(1));
     let (status, said, _) = run(&["history", &path]);
     assert!(status == 0 && said.contains("jump: cell_2026-03-01.json") && said.contains("drifts"), "{said}");
+    assert!(said.contains("The calibration jumped once and drifts: point x +0.0"), "{said}");
     assert!(said.contains("left out:") && said.contains("broken.json"), "{said}");
     let (status, table, error) = run(&["history", &path, "--csv"]);
     assert!(error.contains("broken.json") && error.lines().count() == 1, "{error}");

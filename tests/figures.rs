@@ -168,7 +168,9 @@ fn every_sample_has_the_figures_that_its_data_allow() {
             "plate.json" => {
                 has(&["setup", "trajectory", "profile", "errors", "scatter", "influence", "halves", "distances"]);
             }
-            "tip.json" => has(&["setup", "trajectory", "profile", "profiles", "errors", "scatter", "stability"]),
+            "tip.json" => {
+                has(&["setup", "trajectory", "profile", "profiles-1", "profiles-2", "errors", "scatter", "stability"]);
+            }
             "workpiece.json" => {
                 has(&["trajectory", "part-1-plane-distances", "part-2-plane-distances", "part-2-teeth"]);
             }
@@ -176,7 +178,7 @@ fn every_sample_has_the_figures_that_its_data_allow() {
             "lin-mu-2019-table-1.json" | "lin-mu-2019-table-2.json" => {
                 has(&["setup", "errors", "scatter", "stability"]);
             }
-            "near-largest-arc.json" => has(&["profile", "profiles", "errors", "halves"]),
+            "near-largest-arc.json" => has(&["profile", "profiles-1", "errors", "halves"]),
             _ => has(&[
                 "setup",
                 "trajectory",

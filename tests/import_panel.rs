@@ -179,7 +179,19 @@ fn a_bag_shows_its_topics_and_what_became_of_its_messages() {
     let mut harness = bench.harness();
     harness.get_by_label(&report.expect("what became of the bag"));
     harness.get_by_label(&words::setting(bag_words::PROFILE_TOPIC));
-    assert_eq!(harness.get_by_label(&words::setting(bag_words::FLANGE_FRAME)).value().as_deref(), Some("tool0"));
+    let flange = words::setting(bag_words::FLANGE_FRAME);
+    assert_eq!(harness.get_by_label(&flange).value().as_deref(), Some("tool0 (fixed in wrist)"));
+    // The topics with their counts, and those in use.
+    harness.get_by_label("/tf_static");
+    harness.get_by_label("profiles, in use");
+    harness.get_by_label("PointCloud2");
+    // Another frame of the tree is picked from the list.
+    click(&mut harness, &flange);
+    pick(&mut harness, "wrist (in arm)");
+    let bag = BagOptions { flange_frame: Some("wrist".to_owned()), ..BagOptions::default() };
+    let picked = ImportOptions { bag, ..ImportOptions::default() };
+    assert_eq!(harness.state().commands, [Command::SetImportOptions(Box::new(picked))]);
+    harness.state_mut().commands.clear();
     click(&mut harness, &words::setting(bag_words::TAKING));
     pick(&mut harness, bag_words::taking(Taking::EveryProfile));
     let bag = BagOptions { taking: Some(Taking::EveryProfile), ..BagOptions::default() };
@@ -190,6 +202,42 @@ fn a_bag_shows_its_topics_and_what_became_of_its_messages() {
     // Every profile with a pose: more captures than stays, sweeps of one orientation together.
     let captures: usize = bench.imported().stations.iter().map(|station| station.captures.len()).sum();
     assert!(captures > 20, "{captures}");
+}
+
+#[test]
+fn what_was_set_for_a_bag_is_remembered_as_far_as_the_next_one_has_it() {
+    let path = |name: &str| std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/bags").join(name);
+    let mut bench = Bench::empty();
+    bench.apply(Command::Import(vec![path("tf_cloud_db3")]));
+    let mut harness = bench.harness();
+    let bag = BagOptions {
+        pose_topic: Some("/tf".to_owned()),
+        flange_frame: Some("wrist".to_owned()),
+        still_within_mm: 0.07,
+        joins_stays: false,
+        ..BagOptions::default()
+    };
+    let options = ImportOptions { bag: bag.clone(), ..ImportOptions::default() };
+    harness.state_mut().apply(Command::SetImportOptions(Box::new(options)));
+    harness.run_steps(3);
+    type_into(&mut harness, words::RADIUS_FIELD, "15");
+    click(&mut harness, words::NEW_SESSION);
+    // The next recording of the same robot, and one without these topics.
+    for (name, expected) in [
+        ("tf_cloud_db3", bag.clone()),
+        ("pose_cloud_f64_lz4.mcap", BagOptions { pose_topic: None, flange_frame: None, ..bag.clone() }),
+    ] {
+        let bench = harness.state_mut();
+        bench.apply(Command::CancelImport);
+        bench.commands.clear();
+        bench.apply(Command::Import(vec![path(name)]));
+        harness.run_steps(3);
+        let found = harness.state().commands.iter().find_map(|command| match command {
+            Command::SetImportOptions(options) => Some(options.bag.clone()),
+            _ => None,
+        });
+        assert_eq!(found, Some(expected), "{name}");
+    }
 }
 
 #[test]

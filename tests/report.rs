@@ -340,7 +340,7 @@ fn refusals_name_what_was_found_and_what_was_expected() {
         (vec!["report", tip], 2, "--out"),
         (vec!["report", tip, "--out", "out", "--section", "prices"], 2, "expected one of: verdict"),
         (vec!["report", tip, "--out", "out", "--section", "verdict", "--without", "setup"], 2, "cannot be used with"),
-        (vec!["report", tip, "--out", "file"], 2, "cannot make the folder file"),
+        (vec!["report", tip, "--out", "file"], 2, "file is a file, and a report needs a folder"),
     ] {
         let output = handeye(&arguments, folder.path());
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -361,4 +361,74 @@ fn a_session_without_a_calibration_is_reported_and_the_status_says_so() {
     assert!(String::from_utf8_lossy(&output.stderr).contains("the report says so"));
     let page = fs::read_to_string(folder.path().join("out/report.html")).expect("the report is there");
     assert!(page.contains("No calibration"));
+}
+
+#[test]
+fn centres_have_no_radius_to_be_wrong() {
+    let (evidence, document) = report(&sample("lin-mu-2019-table-1.json"), &Options::default());
+    let said = markdown(&document);
+    assert!(!said.contains("If the radius is wrong"), "{said}");
+    assert!(said.contains("not used, as the readings are centres already"));
+    // There is no section that tells what the data show of the noise.
+    assert!(!said.contains("estimated from the data"));
+    let setup = document.figures().find(|figure| figure.id == "setup").expect("a sketch");
+    assert!(setup.title.contains("ball's centre") && !evidence.targets[0].uses_radius());
+    let (_, with_radius) = report(&sample("clean-sweeps.json"), &without_figures());
+    assert!(markdown(&with_radius).contains("If the radius is wrong"));
+}
+
+#[test]
+fn a_lowered_verdict_names_what_lowered_it() {
+    let (_, document) = report(&sample("near-largest-arc.json"), &without_figures());
+    let verdict = document.blocks().find_map(|block| match block {
+        Block::Verdict(verdict) => Some(verdict),
+        _ => None,
+    });
+    let verdict = verdict.expect("a verdict");
+    assert_eq!(verdict.name, "Usable");
+    let expected = "By its figures alone it would be good; “blind-in-y” lowers it to usable.";
+    assert!(verdict.reason.starts_with(expected), "{}", verdict.reason);
+}
+
+#[test]
+fn what_needs_no_calibration_is_not_marked_as_a_failure() {
+    let (_, document) = report(&sample("workpiece.json"), &without_figures());
+    let page = html(&document).expect("drawn");
+    assert!(page.contains("class=\"verdict none\"") && !page.contains(".verdict.none"), "neutral colours");
+    // A plane's equation and an angle's uncertainty are figures in the tables.
+    let csv = |id: &str| {
+        let table = document.tables().find(|table| table.id == id).expect("a table of this name");
+        handeye::report::csv_tables::csv_table(table)
+    };
+    assert!(csv("planes").starts_with("plane,normal_x,normal_y,normal_z,offset_mm,height_std_mm"), "{}", csv("planes"));
+    assert!(csv("angles").starts_with("planes,angle_deg,angle_std_deg\n"), "{}", csv("angles"));
+    let row: Vec<f64> =
+        csv("planes").lines().nth(1).expect("a plane").split(',').skip(1).take(3).flat_map(str::parse).collect();
+    assert!((row.iter().map(|part| part * part).sum::<f64>() - 1.0).abs() < 1e-12, "a unit vector: {row:?}");
+}
+
+#[test]
+fn figures_name_the_calibrations_that_they_leave_out() {
+    let (_, document) = report(&sample("three-targets.json"), &Options::default());
+    let left_out: Vec<&str> = document
+        .figures()
+        .filter_map(|figure| figure.title.split_once("not shown: ").map(|(_, names)| names))
+        .collect();
+    assert!(left_out.iter().any(|names| names.contains("Largest arc, published stop")), "{left_out:?}");
+}
+
+#[test]
+fn rotations_have_the_digits_that_their_uncertainty_allows() {
+    let decimals = |sample_name: &str| {
+        let (_, document) = report(&sample(sample_name), &without_figures());
+        let table = document.tables().find(|table| table.id == "quaternion").expect("a quaternion");
+        let cell = &table.rows[0][0];
+        assert!(
+            cell.value.is_some_and(|value| (value.abs() - value.abs().round()).abs() > 1e-9),
+            "all digits are kept"
+        );
+        cell.text.split_once('.').map_or(0, |(_, decimals)| decimals.len())
+    };
+    // σ of 0.03°, and of half a degree.
+    assert_eq!((decimals("clean-sweeps.json"), decimals("lin-mu-2019-table-1.json")), (6, 4));
 }

@@ -1,16 +1,19 @@
 //! The Verify step, driven by the names that screen readers see, in the whole window.
+#![expect(clippy::expect_used, reason = "a test that finds nothing to check must fail")]
 
 mod step_window;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use handeye::app::Command;
+use handeye::report::result_history::{read_history, said};
 use handeye::scene::PartKind;
 use handeye::session::{self, Session};
 use handeye::simulate::{SimulationOptions, SimulationTarget, simulate};
-use handeye::text::verify as words;
+use handeye::text::{compare_results as result_words, verify as words};
 use handeye::ui::Window;
 use handeye::verify::Origin;
+use handeye::watch::Unwatched;
 use step_window::{apply, click, window_on, workbench};
 
 fn simulated(target: SimulationTarget, further: Vec<SimulationTarget>, seed: u64) -> Session {
@@ -145,4 +148,81 @@ fn every_section_fits_every_size() {
             assert!(tab.max.x <= size[0], "{section} at {size:?}: {tab:?}");
         }
     }
+}
+
+/// A folder with the results of a sensor that drifts along x, week by week.
+fn folder_of_results(num_weeks: u32) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    for week in 0..num_weeks {
+        // A fixed pattern of noise, so that neighbouring weeks differ by more than the drift now and then.
+        let noise = 0.004 * f64::from(week * 7 % 5) - 0.008;
+        let x_mm = 12.0 + 0.01 * f64::from(week) + noise;
+        let covariance: Vec<Vec<f64>> =
+            (0..6).map(|row| (0..6).map(|column| if row == column { 1e-6 } else { 0.0 }).collect()).collect();
+        let file = serde_json::json!({
+            "format": "handeye-result", "version": 1, "answer": "ball-bundle",
+            "methods": [{
+                "method": "ball-bundle", "status": "ok",
+                "flange_from_sensor": {
+                    "matrix": [[1, 0, 0, x_mm], [0, 1, 0, noise], [0, 0, 1, 130.0 - noise], [0, 0, 0, 1]]
+                },
+                "uncertainty": { "covariance": covariance, "reference_point_in_sensor_mm": [0.0, 0.0, 60.0] },
+            }],
+        });
+        let name = format!("cell_2026-{:02}-{:02}.json", 1 + week / 4, 1 + 7 * (week % 4));
+        std::fs::write(folder.path().join(name), file.to_string()).expect("written");
+    }
+    std::fs::write(folder.path().join("broken.json"), "{").expect("written");
+    folder
+}
+
+#[test]
+fn a_folder_of_results_shows_its_drift_in_the_words_of_the_command() {
+    let folder = folder_of_results(14);
+    let mut harness = window_on(simulated(TIP, Vec::new(), 1));
+    click(&mut harness, result_words::HISTORY);
+    assert!(harness.query_by_label(result_words::NOTHING_READ).is_some());
+    type_into(&mut harness, result_words::FOLDER_FIELD, &folder.path().to_string_lossy());
+    click(&mut harness, result_words::READ_FOLDER);
+    let history = read_history(folder.path(), &mut Unwatched).expect("results");
+    assert!(harness.query_by_label(&said::verdict(&history)).is_some());
+    // The table, and what is said of trends and of the file that is none.
+    assert!(harness.query_all_by_label(&said::history_rows(&history)[3][1]).next().is_some());
+    let sentences = said::history_sentences(&history);
+    assert!(sentences.iter().any(|sentence| sentence.text.contains("broken.json")));
+    for sentence in sentences {
+        assert!(harness.query_by_label(&sentence.text).is_some(), "{}", sentence.text);
+    }
+    type_into(&mut harness, result_words::FOLDER_FIELD, "/missing");
+    click(&mut harness, result_words::READ_FOLDER);
+    assert!(harness.query_all_by_label_contains("/missing: ").next().is_some());
+}
+
+#[test]
+fn two_results_and_the_open_session_against_one_are_compared() {
+    let folder = folder_of_results(14);
+    let file = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    let mut harness = window_on(simulated(TIP, Vec::new(), 1));
+    click(&mut harness, result_words::COMPARE);
+    assert!(harness.query_by_label(result_words::NOTHING_COMPARED).is_some());
+    // The later side is the open session unless a file is chosen.
+    type_into(&mut harness, result_words::SIDE_FIELDS[0], &file("cell_2026-01-01.json"));
+    click(&mut harness, result_words::COMPARE_BUTTON);
+    let found = |harness: &Harness<'static, Window>| {
+        let compared = workbench(harness).comparison().last().expect("compared").value.clone();
+        compared.outcome.expect("both are calibrations")
+    };
+    assert!(found(&harness).to.name.ends_with("fixed-point"), "{}", found(&harness).to.name);
+    click(&mut harness, result_words::SIDE_SESSIONS[1]);
+    type_into(&mut harness, result_words::SIDE_FIELDS[1], &file("cell_2026-04-08.json"));
+    type_into(&mut harness, result_words::POINTS_FIELD, "0,0,80");
+    click(&mut harness, result_words::COMPARE_BUTTON);
+    let comparison = found(&harness);
+    assert!((comparison.difference.translation_mm.x - 0.13).abs() < 0.03, "{comparison:?}");
+    assert_eq!(comparison.points.given.len(), 1);
+    // In the words of the command.
+    let known = comparison.difference.known;
+    let whole = result_words::significance(comparison.difference.p_value, known);
+    assert!(harness.query_by_label(&result_words::verdict_on(result_words::AS_A_WHOLE, &whole)).is_some(), "{whole}");
+    apply(&mut harness, Command::CancelComparison);
 }

@@ -13,6 +13,7 @@ use crate::verify::Calibration;
 
 use super::cell::CellCommand;
 use super::workbench::NoticeKind;
+use super::workbench::comparing::Sides;
 use super::workbench::scans::ScanCommand;
 
 impl Command {
@@ -155,6 +156,14 @@ pub enum Command {
     GiveCalibration(Box<Calibration>),
     /// Forgets it, by its name.
     WithdrawCalibration(String),
+    /// Holds two calibrations against each other.
+    CompareCalibrations(Box<Sides>),
+    /// Stops that; the last comparison stays.
+    CancelComparison,
+    /// Reads the calibrations of a folder and looks at them over time.
+    ReadResultHistory(PathBuf),
+    /// Stops that; the last history stays.
+    CancelResultHistory,
     /// Something for scanned parts.
     Scan(Box<ScanCommand>),
     /// Something for the live cell.
@@ -163,6 +172,8 @@ pub enum Command {
     GatherReport,
     /// Stops that; what was gathered last stays.
     CancelReport,
+    /// Opens the page of the report that was written last in a browser.
+    OpenReport,
     /// Writes the report, as a page and as Markdown, with its tables, figures and exports.
     WriteReport {
         /// The folder, made if it is missing; files of a report that is there are replaced.

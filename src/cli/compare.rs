@@ -5,9 +5,9 @@ use std::process::ExitCode;
 
 use crate::geometry::Vec3;
 use crate::report::result_history::file::comparison_file;
-use crate::report::result_history::{ComparedPoints, NotCompared, compared_points, read_compared};
+use crate::report::result_history::said::comparison_text;
+use crate::report::result_history::{self, NotCompared, read_compared};
 use crate::text::compare_results as words;
-use crate::verify::difference::difference;
 use crate::watch::Unwatched;
 
 use super::{EXIT_NOTHING_COMPUTED, EXIT_WRONG_INPUT, fail};
@@ -30,9 +30,7 @@ pub struct CompareArgs {
 }
 
 fn point(text: &str) -> Result<Vec3, String> {
-    let numbers: Option<Vec<f64>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
-    let numbers = numbers.filter(|numbers| numbers.len() == 3 && numbers.iter().all(|number| number.is_finite()));
-    numbers.map(|numbers| Vec3::from_column_slice(&numbers)).ok_or_else(|| words::not_a_point(text))
+    result_history::point_in(text).ok_or_else(|| words::not_a_point(text))
 }
 
 /// Runs the command.
@@ -56,32 +54,6 @@ pub(super) fn refuse(refusal: &NotCompared) -> ExitCode {
 fn compared(args: &CompareArgs) -> Result<String, NotCompared> {
     let first = read_compared(&args.first, &mut Unwatched)?;
     let second = read_compared(&args.second, &mut Unwatched)?;
-    if first.mount != second.mount {
-        return Err(NotCompared::Wrong(words::mounts_differ(&first.name, &second.name)));
-    }
-    let found = difference(&first.stated, &second.stated);
-    let points = compared_points(&first, &second, &args.points);
-    if args.json {
-        return Ok(format!("{:#}\n", comparison_file(&first, &second, &found, &points)));
-    }
-    let mut said = words::compare_head(&first.name, &second.name);
-    for calibration in [&first, &second].into_iter().filter(|calibration| calibration.is_nearest) {
-        said.push_str(&words::nearest_line(&calibration.name));
-    }
-    said.push('\n');
-    said.push_str(&words::difference_lines(&found));
-    let ComparedPoints { reference, given, measured } = &points;
-    if let Some(shift) = reference {
-        said.push_str(&words::point_line(words::REFERENCE_POINT, shift, found.known));
-    }
-    for shift in given {
-        said.push_str(&words::point_line(words::GIVEN_POINT, shift, found.known));
-    }
-    if !measured.is_empty() {
-        let sizes: Vec<f64> = measured.iter().map(|shift| shift.shift_mm.norm()).collect();
-        #[expect(clippy::cast_precision_loss, reason = "stations of two sessions")]
-        let mean = sizes.iter().sum::<f64>() / sizes.len() as f64;
-        said.push_str(&words::measured_line(sizes.len(), mean, sizes.iter().copied().fold(0.0, f64::max)));
-    }
-    Ok(said)
+    let comparison = result_history::compared(first, second, &args.points)?;
+    Ok(if args.json { format!("{:#}\n", comparison_file(&comparison)) } else { comparison_text(&comparison) })
 }

@@ -80,9 +80,7 @@ fn reported(args: &ReportArgs) -> Result<(String, Option<String>), Refusal> {
     let mut given = Vec::new();
     for path in &args.calibrations {
         let read = read_calibration_for(path, session.mount).map_err(|error| wrong(&error))?;
-        let bytes =
-            std::fs::read(path).map_err(|error| wrong(&words::unreadable(&path.display().to_string(), &error)))?;
-        inputs.push(InputFile::new(name_of(path), &bytes));
+        inputs.push(read.file);
         let origin = Origin::Given { name: read.name.clone(), is_nearest: !read.check.is_rotation() };
         given.push(Calibration { origin, flange_from_sensor: read.flange_from_sensor, workspace_point_std_mm: None });
     }

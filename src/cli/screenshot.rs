@@ -6,6 +6,8 @@ use std::process::ExitCode;
 use clap::{Args, ValueEnum};
 
 use crate::ui::persisted::ThemeChoice;
+use crate::ui::screenshot::Scene;
+use crate::ui::verify::Section;
 use crate::ui::{self, Step};
 
 use super::{EXIT_WRONG_INPUT, fail};
@@ -22,6 +24,15 @@ pub struct ScreenshotArgs {
     /// Step of the rail
     #[arg(long, value_enum, default_value_t = StepName::Session)]
     pub step: StepName,
+    /// Section of Verify
+    #[arg(long, value_enum)]
+    pub section: Option<SectionName>,
+    /// What the section is about: two files to compare (or one, with the session), or a folder of results
+    #[arg(long, value_name = "PATH", requires = "section")]
+    pub of: Vec<PathBuf>,
+    /// Show the import's preview of these files
+    #[arg(long, value_name = "PATH")]
+    pub import: Vec<PathBuf>,
     /// Width, pixels
     #[arg(long, default_value_t = 1440, value_parser = clap::value_parser!(u32).range(640..=4096))]
     pub width: u32,
@@ -52,6 +63,31 @@ pub enum StepName {
     Verify,
     /// The report and the tool frame
     Report,
+}
+
+/// The sections of Verify by their names on the command line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[expect(missing_docs, reason = "the names say it")]
+pub enum SectionName {
+    Distances,
+    Stability,
+    OtherTargets,
+    Workpiece,
+    Compare,
+    History,
+}
+
+impl From<SectionName> for Section {
+    fn from(name: SectionName) -> Self {
+        match name {
+            SectionName::Distances => Self::Distances,
+            SectionName::Stability => Self::Stability,
+            SectionName::OtherTargets => Self::CrossTarget,
+            SectionName::Workpiece => Self::Workpiece,
+            SectionName::Compare => Self::CompareResults,
+            SectionName::History => Self::ResultHistory,
+        }
+    }
 }
 
 /// The themes by their names on the command line.
@@ -90,13 +126,15 @@ impl From<StepName> for Step {
 /// Runs the command.
 #[must_use]
 pub fn run(args: &ScreenshotArgs) -> ExitCode {
-    match ui::screenshot(
-        args.file.as_deref(),
-        args.step.into(),
-        args.theme.into(),
-        [args.width, args.height],
-        &args.out,
-    ) {
+    let scene = Scene {
+        session: args.file.clone(),
+        // A section is one of Verify.
+        step: if args.section.is_some() { Step::Verify } else { args.step.into() },
+        section: args.section.map(Section::from),
+        of: args.of.clone(),
+        import: args.import.clone(),
+    };
+    match ui::screenshot(&scene, args.theme.into(), [args.width, args.height], &args.out) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => fail(EXIT_WRONG_INPUT, &error),
     }

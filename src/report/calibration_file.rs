@@ -13,6 +13,7 @@ use crate::geometry::{Flange, Mat3, Sensor, Transform, Vec3};
 use crate::text::verify::nearest_of;
 use crate::verify::{GivenMatrix, MatrixCheck, MatrixRefusal, parse_matrix};
 
+use super::document::InputFile;
 use super::{result_file, verification_file};
 
 /// No result file is larger.
@@ -104,6 +105,8 @@ impl NamedCalibration {
 /// A calibration from a file, and whether what stood there is one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadCalibration {
+    /// The file that was read.
+    pub file: InputFile,
     /// The file's name, and the method in it.
     pub name: String,
     /// Where the sensor is mounted; a matrix does not say.
@@ -163,10 +166,14 @@ pub fn read_calibration_for(path: &Path, mount: Mount) -> Result<ReadCalibration
 /// # Errors
 /// [`CalibrationFileError`].
 pub fn read_calibration(path: &Path) -> Result<ReadCalibration, CalibrationFileError> {
-    let Written { name, mount, matrix, stated } = read_matrix(path)?;
+    let bytes = read_bytes(path)?;
+    let Written { name, mount, matrix, stated } = matrix_in(&bytes, path)?;
     let check = matrix.check();
     match matrix.nearest() {
-        Some(flange_from_sensor) => Ok(ReadCalibration { name, mount, check, flange_from_sensor, stated }),
+        Some(flange_from_sensor) => {
+            let file = InputFile::new(file_name(path), &bytes);
+            Ok(ReadCalibration { file, name, mount, check, flange_from_sensor, stated })
+        }
         None => Err(CalibrationFileError::NoRotation { file: path.to_owned(), determinant: check.determinant }),
     }
 }
@@ -179,14 +186,25 @@ struct Written {
     stated: StatedInFile,
 }
 
-fn read_matrix(path: &Path) -> Result<Written, CalibrationFileError> {
+fn read_bytes(path: &Path) -> Result<Vec<u8>, CalibrationFileError> {
     let unreadable = |problem| CalibrationFileError::Unreadable { file: path.to_owned(), problem };
-    let file_name =
-        path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned());
     let mut bytes = Vec::new();
     File::open(path).map_err(unreadable)?.take(LIMIT_BYTES).read_to_end(&mut bytes).map_err(unreadable)?;
+    Ok(bytes)
+}
+
+/// Without its folder, which is another on every machine.
+fn file_name(path: &Path) -> String {
+    path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
+}
+
+fn matrix_in(bytes: &[u8], path: &Path) -> Result<Written, CalibrationFileError> {
+    let file_name = file_name(path);
     let neither = |found: &str| CalibrationFileError::Neither { file: path.to_owned(), found: found.to_owned() };
-    let text = std::str::from_utf8(&bytes).map_err(|_| neither("bytes that are no text"))?;
+    let text = std::str::from_utf8(bytes).map_err(|_| neither("bytes that are no text"))?;
+    if text.trim().is_empty() {
+        return Err(neither("nothing"));
+    }
     if text.trim_start().starts_with('{') {
         let value: Value = serde_json::from_str(text).map_err(|error| neither(&format!("broken JSON ({error})")))?;
         let written = from_result(path, &value)?;

@@ -67,7 +67,9 @@ pub fn accuracy_lines(session: &Session, solution: &Solution, examination: &Exam
         most_influential.map(words::influence_line),
         examination.bootstrap.map(words::bootstrap_line),
         solution.uncertainty.as_ref().map(|uncertainty| words::accuracy_line(uncertainty, solution.mount)),
-        Method::BALL.contains(&solution.method).then(|| words::radius_line(solution)),
+        // Nothing follows the radius where the readings are centres already.
+        (Method::BALL.contains(&solution.method) && solution.change_by_radius.norm() > 0.0)
+            .then(|| words::radius_line(solution)),
         solution.radius.as_ref().map(words::estimated_radius_line),
         solution.noise.as_ref().map(|noise| words::noise_line(noise, &session.robot)),
     ]

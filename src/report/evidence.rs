@@ -102,6 +102,15 @@ impl TargetEvidence {
         best_available(self.results())
     }
 
+    /// Whether a ball's radius was computed with: it is not where all readings in use are centres already.
+    #[must_use]
+    pub fn uses_radius(&self) -> bool {
+        let in_use = self.session.stations.iter().filter(|station| station.enabled);
+        let mut readings = in_use.flat_map(|station| &station.captures).map(|capture| &capture.reading);
+        matches!(self.session.target, session::Target::Ball { .. })
+            && readings.any(|reading| matches!(reading, session::Reading::Profile(_)))
+    }
+
     /// What is wrong with it.
     #[must_use]
     pub fn diagnosis(&self) -> Option<&Diagnosis> {

@@ -2,7 +2,11 @@
 
 use std::collections::BTreeMap;
 use std::io::{Cursor, ErrorKind, Write as _};
+use std::num::NonZero;
 use std::path::{Component, Path, PathBuf};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
 
 use image::ImageFormat;
 use thiserror::Error;
@@ -47,6 +51,12 @@ pub struct ReportFile {
 /// Why a report was not written, or not all of it.
 #[derive(Debug, Error)]
 pub enum ReportError {
+    /// There is something else in the folder's place.
+    #[error("{} is a file, and a report needs a folder; give one that is missing or that a report was written to", folder.display())]
+    NotAFolder {
+        /// Its place.
+        folder: PathBuf,
+    },
     /// The operating system did not let us make the folder.
     #[error("cannot make the folder {}: {problem}", folder.display())]
     NoFolder {
@@ -87,11 +97,39 @@ pub fn report_files(document: &Document, evidence: &Evidence) -> Result<Vec<Repo
         file(RESULT.to_owned(), result(evidence)),
     ];
     files.extend(document.tables().map(|table| file(format!("{TABLES}/{}.csv", table.id), csv_table(table))));
-    for figure in document.figures() {
-        files.push(file(figure_path(figure, "svg"), figure.svg()?));
-        files.push(ReportFile { path: figure_path(figure, "png"), bytes: png(figure)? });
-    }
+    files.extend(drawn(&document.figures().collect::<Vec<_>>())?);
     files.extend(exports(evidence).into_iter().map(|export| file(export.path, export.text)));
+    Ok(files)
+}
+
+/// Every figure as SVG and PNG, in order. Pixels take most of a report's time, so each processor draws a part of them.
+fn drawn(figures: &[&Figure]) -> Result<Vec<ReportFile>, FigureError> {
+    let draw = |figure: &Figure| -> Result<[ReportFile; 2], FigureError> {
+        let svg = ReportFile { path: figure_path(figure, "svg"), bytes: figure.svg()?.into_bytes() };
+        Ok([svg, ReportFile { path: figure_path(figure, "png"), bytes: png(figure)? }])
+    };
+    let slots: Vec<OnceLock<Result<[ReportFile; 2], FigureError>>> = figures.iter().map(|_| OnceLock::new()).collect();
+    let next = AtomicUsize::new(0);
+    let work = || {
+        while let Some((figure, slot)) = {
+            let idx = next.fetch_add(1, Ordering::Relaxed);
+            figures.get(idx).zip(slots.get(idx))
+        } {
+            slot.get_or_init(|| draw(figure));
+        }
+    };
+    let num_threads = thread::available_parallelism().map_or(1, NonZero::get).min(figures.len());
+    thread::scope(|scope| {
+        for _ in 1..num_threads {
+            // Where no thread is to be had, this one draws everything.
+            let _ = thread::Builder::new().spawn_scoped(scope, work);
+        }
+        work();
+    });
+    let mut files = Vec::with_capacity(2 * figures.len());
+    for drawn in slots.into_iter().filter_map(OnceLock::into_inner) {
+        files.extend(drawn?);
+    }
     Ok(files)
 }
 
@@ -125,8 +163,11 @@ fn result(evidence: &Evidence) -> String {
 /// changed it since; a file of anybody else's is never replaced. Gives the files that were written.
 ///
 /// # Errors
-/// [`ReportError`]. After [`ReportError::Foreign`] nothing is written, after another the files before the one that it names.
+/// [`ReportError`]. After [`ReportError::Foreign`] and [`ReportError::NotAFolder`] nothing is written, after another the files before the one that it names.
 pub fn write_files(files: &[ReportFile], folder: &Path) -> Result<Vec<PathBuf>, ReportError> {
+    if folder.exists() && !folder.is_dir() {
+        return Err(ReportError::NotAFolder { folder: folder.to_path_buf() });
+    }
     let earlier = earlier_files(&folder.join(SUMS));
     let foreign = files.iter().find(|file| !earlier.contains_key(&file.path) && folder.join(&file.path).exists());
     if let Some(file) = foreign {
@@ -204,6 +245,15 @@ mod tests {
         assert_eq!(std::fs::read_to_string(place(RESULT)).expect("there"), "2");
         assert!(!place("tables/a.csv").exists() && !place(PDF).exists());
         assert!(place("tables/b.csv").exists() && place("mine.txt").exists());
+    }
+
+    #[test]
+    fn a_file_in_the_place_of_the_folder_is_named() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let place = folder.path().join("out");
+        std::fs::write(&place, "mine").expect("written");
+        let refused = write_files(&[file(RESULT, "1")], &place).expect_err("it is a file");
+        assert!(refused.to_string().contains("out is a file, and a report needs a folder"), "{refused}");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The verdict on a result, as the window and a report begin with it.
 
-use crate::calibrate::{Method, MethodResult, Solution, Verdict, best_available};
+use crate::calibrate::{Method, MethodResult, Solution, Verdict, VerdictReason, best_available, verdict};
 use crate::diagnose::{Diagnosis, Reason, verdict_with};
 use crate::session::Session;
 use crate::text;
@@ -25,6 +25,8 @@ pub struct Judgement {
     pub verdict: Verdict,
     /// Its reason in a sentence.
     pub reason: String,
+    /// The verdict by the figures alone and the code of the warning or finding that lowered it; `None` where none did.
+    pub lowered: Option<(Verdict, &'static str)>,
     /// How well a point is known.
     pub workspace_point: Option<WorkspacePoint>,
     /// Sentence and remedy of each warning.
@@ -42,9 +44,22 @@ impl Judgement {
     #[must_use]
     pub fn on(session: &Session, solution: &Solution, diagnosis: Option<&Diagnosis>) -> Self {
         let (verdict, reason) = verdict_with(solution, diagnosis);
+        let lowered = match reason {
+            // A warning decides only where the figures are good.
+            Reason::Solution(VerdictReason::Warning(idx)) => {
+                solution.warnings.get(idx).map(|warning| (Verdict::Good, warning.code()))
+            }
+            Reason::Solution(_) => None,
+            Reason::Finding(finding) => {
+                let (by_figures, why) = verdict::judge(solution);
+                let by_figures = if matches!(why, VerdictReason::Warning(_)) { Verdict::Good } else { by_figures };
+                (by_figures < verdict).then(|| (by_figures, finding.fault.code()))
+            }
+        };
         Self {
             method: solution.method,
             verdict,
+            lowered,
             reason: match reason {
                 Reason::Solution(reason) => text::compare::verdict_reason(solution, reason),
                 Reason::Finding(finding) => text::diagnosis::fault_message(&finding.fault, session),

@@ -17,6 +17,7 @@ pub mod html;
 pub mod judgement;
 pub mod markdown;
 pub mod odometry_file;
+pub mod open;
 pub mod pdf;
 pub mod result_file;
 pub mod result_history;

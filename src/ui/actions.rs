@@ -6,8 +6,8 @@ use crate::app::{Document, Workbench};
 use crate::scene::PartKind;
 use crate::session::{Capture, Reading};
 use crate::text::{
-    capture as capture_words, document as document_words, import as import_words, report_panel as report_words,
-    shell as words, verify as verify_words, workpiece as workpiece_words,
+    capture as capture_words, compare_results as compare_words, document as document_words, import as import_words,
+    report_panel as report_words, shell as words, verify as verify_words, workpiece as workpiece_words,
 };
 
 use super::rail::Step;
@@ -47,6 +47,10 @@ pub enum Action {
     OpenPoints,
     /// Asks for the file with the calibration that a scan is seen through.
     ChooseCalibration,
+    /// Asks for the file of a side of a comparison: 0 the earlier, 1 the later.
+    ChooseCompared(usize),
+    /// Asks for a folder of results.
+    ChooseResultFolder,
     /// Saves to the session's file, asking for one where there is none.
     Save,
     /// Asks for a file and saves there.
@@ -111,7 +115,9 @@ impl Action {
             | Self::ExportPoints
             | Self::SaveReport
             | Self::OpenPoints
-            | Self::ChooseCalibration => return None,
+            | Self::ChooseCalibration
+            | Self::ChooseCompared(_)
+            | Self::ChooseResultFolder => return None,
         };
         Some(KeyboardShortcut::new(modifiers, key))
     }
@@ -137,6 +143,8 @@ impl Action {
             Self::SaveReport => report_words::SAVE_REPORT.to_owned(),
             Self::OpenPoints => workpiece_words::OPEN_POINTS.to_owned(),
             Self::ChooseCalibration => workpiece_words::CHOOSE_CALIBRATION.to_owned(),
+            Self::ChooseCompared(_) => compare_words::CHOOSE_SIDE_TITLE.to_owned(),
+            Self::ChooseResultFolder => compare_words::CHOOSE_FOLDER_TITLE.to_owned(),
             Self::Save => words::SAVE.to_owned(),
             Self::SaveAs => words::SAVE_AS.to_owned(),
             Self::Close => words::CLOSE.to_owned(),
@@ -186,6 +194,8 @@ impl Action {
             | Self::ExportPoints
             | Self::OpenPoints
             | Self::ChooseCalibration
+            | Self::ChooseCompared(_)
+            | Self::ChooseResultFolder
             | Self::Quit
             | Self::Help
             | Self::GoTo(_) => None,

@@ -7,8 +7,8 @@ use std::time::{Duration, Instant};
 
 use crate::app::jobs::Wake;
 use crate::text::{
-    capture as capture_words, import as import_words, report_panel as report_words, shell as words,
-    tool_frame as tool_frame_words, verify as verify_words, workpiece as workpiece_words,
+    capture as capture_words, compare_results as compare_words, import as import_words, report_panel as report_words,
+    shell as words, tool_frame as tool_frame_words, verify as verify_words, workpiece as workpiece_words,
 };
 
 /// Nobody cancels a dialog faster than this; so quick a "nothing chosen" means that no dialog came up.
@@ -39,6 +39,10 @@ pub enum Purpose {
     OpenPoints,
     /// Choosing a file with a calibration.
     Calibration,
+    /// Choosing a file for a side of a comparison.
+    Compared(usize),
+    /// Choosing a folder of results.
+    ResultFolder,
     /// Choosing the folder that a profiler's software saves profiles into.
     WatchedFolder,
     /// Choosing a file to write a tool frame to.
@@ -68,6 +72,8 @@ impl Purpose {
             Self::ExportPoints => workpiece_words::EXPORT_POINTS_TITLE,
             Self::OpenPoints => workpiece_words::OPEN_POINTS_TITLE,
             Self::Calibration => workpiece_words::CALIBRATION_TITLE,
+            Self::Compared(_) => compare_words::CHOOSE_SIDE_TITLE,
+            Self::ResultFolder => compare_words::CHOOSE_FOLDER_TITLE,
             Self::WatchedFolder => capture_words::FOLDER_TITLE,
             Self::ToolFrame => tool_frame_words::SAVE_TITLE,
             Self::Picture => report_words::PICTURE_TITLE,
@@ -85,6 +91,7 @@ impl Purpose {
             Self::ImportFiles | Self::ImportFolder | Self::AddSession => import_words::IMPORT_BUTTON,
             Self::AddFurther => verify_words::ADD_TARGET_BUTTON,
             Self::ExportPoses | Self::ExportProfiles | Self::ExportPoints => import_words::EXPORT_BUTTON,
+            Self::Compared(_) | Self::ResultFolder => compare_words::USE_PATH,
             Self::WatchedFolder => capture_words::FOLDER_BUTTON,
         }
     }
@@ -180,11 +187,13 @@ fn ask(purpose: Purpose, suggested_name: &str) -> Answer {
             let dialog = dialog.add_filter(workpiece_words::POINTS_FILTER, &["ply", "csv", "xyz", "txt", "asc", "pts"]);
             all(dialog).pick_file().map(one)
         }
-        Purpose::Calibration => all(dialog).pick_file().map(one),
+        Purpose::Calibration | Purpose::Compared(_) => all(dialog).pick_file().map(one),
         Purpose::ToolFrame | Purpose::Picture => all(dialog).set_file_name(suggested_name).save_file().map(one),
-        Purpose::ImportFolder | Purpose::ExportProfiles | Purpose::WatchedFolder | Purpose::ReportFolder => {
-            dialog.pick_folder().map(one)
-        }
+        Purpose::ImportFolder
+        | Purpose::ExportProfiles
+        | Purpose::WatchedFolder
+        | Purpose::ReportFolder
+        | Purpose::ResultFolder => dialog.pick_folder().map(one),
     };
     match chosen.filter(|paths| !paths.is_empty()) {
         Some(paths) => Answer::Chosen(purpose, paths),

@@ -23,6 +23,8 @@ pub enum Known {
     One,
     /// Both; their errors are taken to be independent.
     Both,
+    /// Both are from the same data: whatever they state, it is no doubt about their difference.
+    SameData,
 }
 
 /// The second calibration less the first.

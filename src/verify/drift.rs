@@ -41,7 +41,7 @@ pub struct Trend {
 }
 
 /// What became of a calibration over time.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Drift {
     /// One entry a calibration: against the first; the first stands against itself.
     pub from_first: Vec<Change>,
@@ -49,8 +49,10 @@ pub struct Drift {
     pub from_previous: Vec<Change>,
     /// Places of calibrations that are further from the one before than chance and the others' steps explain.
     pub jumps: Vec<usize>,
-    /// Along x, y, z of the flange, mm, and about them, rad, a unit of time, between the jumps; empty with fewer than
+    /// The way of the reference point along x, y, z of the flange, mm a unit of time, between the jumps; empty with fewer than
     /// [`MIN_FOR_TREND`] calibrations or where they have one time.
+    pub point_trends: Vec<Trend>,
+    /// The same along x, y, z of the flange, mm, and about them, rad.
     pub trends: Vec<Trend>,
 }
 
@@ -62,10 +64,9 @@ const MIN_STEPS_FOR_SCATTER: usize = 5;
 const JUMP_P: f64 = 0.02;
 /// The least number of stated σ that is a jump, as those of few calibrations are not known well.
 const JUMP_STD: f64 = 4.0;
-/// Chance makes a drift, along any axis, in fewer histories than this.
+/// Chance makes a drift, of the point or along any axis, in fewer histories than this: half of it is the point's, whose three
+/// axes are so tested less strictly than the six of the calibration.
 const DRIFT_P: f64 = 0.01;
-/// Three along and three about.
-const AXES: usize = 6;
 /// A slope within so many σ of none is none, in whatever order the values are.
 const LEAST_SLOPE_STD: f64 = 2.0;
 /// The median of slopes scatters by so much more than the best line through normal errors.
@@ -79,31 +80,50 @@ pub fn drift(epochs: &[Epoch], reference_in_sensor_mm: Vec3) -> Drift {
         shift: point_shift(&from.calibration, &to.calibration, reference_in_sensor_mm),
     };
     let Some(first) = epochs.first() else {
-        return Drift { from_first: Vec::new(), from_previous: Vec::new(), jumps: Vec::new(), trends: Vec::new() };
+        return Drift::default();
     };
     let from_first: Vec<Change> = epochs.iter().map(|epoch| change(first, epoch)).collect();
     let from_previous: Vec<Change> = epochs.windows(2).map(|pair| change(&pair[0], &pair[1])).collect();
     let jumps = jumps(&from_previous);
     let times: Vec<f64> = epochs.iter().map(|epoch| epoch.at).collect();
-    let trends = (0..AXES)
-        .map_while(|axis| {
-            let values: Vec<f64> = from_first.iter().map(|change| value(&change.difference, axis)).collect();
-            let stds: Vec<Option<f64>> = epochs
-                .iter()
-                .map(|epoch| {
-                    let covariance = epoch.calibration.covariance?;
-                    // About the flange's axes instead of the sensor's: the largest of the three.
-                    let variance = match axis {
-                        0..3 => covariance[(axis + 3, axis + 3)],
-                        _ => (0..3).map(|idx| covariance[(idx, idx)]).fold(0.0, f64::max),
-                    };
-                    Some(variance.sqrt()).filter(|std| std.is_finite() && *std > 0.0)
-                })
-                .collect();
-            trend(&times, &values, &jumps, &stds)
-        })
-        .collect();
-    Drift { from_first, from_previous, jumps, trends }
+    let of_point: Vec<_> = epochs.iter().map(|epoch| point_stds(&epoch.calibration, reference_in_sensor_mm)).collect();
+    let of_axes: Vec<_> = epochs.iter().map(|epoch| axis_stds(&epoch.calibration)).collect();
+    let point_trends = trends(&times, &jumps, &of_point, |idx, axis| from_first[idx].shift.shift_mm[axis]);
+    let trends = trends(&times, &jumps, &of_axes, |idx, axis| value(&from_first[idx].difference, axis));
+    Drift { from_first, from_previous, jumps, point_trends, trends }
+}
+
+/// The trend of each of so many axes; half of the error that is allowed is theirs together.
+fn trends<const N: usize>(
+    times: &[f64],
+    jumps: &[usize],
+    stds: &[Option<[f64; N]>],
+    value: impl Fn(usize, usize) -> f64,
+) -> Vec<Trend> {
+    #[expect(clippy::cast_precision_loss, reason = "three or six")]
+    let limit = DRIFT_P / 2.0 / N as f64;
+    let of_axis = |axis: usize| {
+        let values: Vec<f64> = (0..times.len()).map(|idx| value(idx, axis)).collect();
+        let std = |stds: &Option<[f64; N]>| stds.map(|stds| stds[axis]).filter(|std| std.is_finite() && *std > 0.0);
+        trend(times, &values, jumps, &stds.iter().map(std).collect::<Vec<_>>(), limit)
+    };
+    (0..N).map_while(of_axis).collect()
+}
+
+/// What a calibration states along the three axes of the flange, and about them; of the three about the sensor's the largest.
+#[must_use]
+pub fn axis_stds(calibration: &Stated) -> Option<[f64; 6]> {
+    let covariance = calibration.covariance?;
+    let about = (0..3).map(|idx| covariance[(idx, idx)]).fold(0.0, f64::max).sqrt();
+    Some(std::array::from_fn(|axis| if axis < 3 { covariance[(axis + 3, axis + 3)].sqrt() } else { about }))
+}
+
+/// What a calibration states of where it puts a point, along the three axes of the flange.
+#[must_use]
+pub fn point_stds(calibration: &Stated, point_in_sensor_mm: Vec3) -> Option<[f64; 3]> {
+    let exact = Stated { covariance: None, ..calibration.clone() };
+    let std_mm = point_shift(&exact, calibration, point_in_sensor_mm).std_mm?;
+    Some(std_mm.into())
 }
 
 /// Along x, y, z, then about them.
@@ -147,8 +167,8 @@ fn jump_limits(num_steps: usize) -> (f64, f64) {
 /// The median of the slopes between all pairs with no jump between them: a level that is fitted to each stretch takes nothing
 /// from the slope, where a jump that is subtracted would bring the noise of two calibrations into all that follow.
 ///
-/// `None` with too few values, or at one time.
-fn trend(times: &[f64], values: &[f64], jumps: &[usize], stds: &[Option<f64>]) -> Option<Trend> {
+/// Less likely than `limit` by chance alone, it is a drift. `None` with too few values, or at one time.
+fn trend(times: &[f64], values: &[f64], jumps: &[usize], stds: &[Option<f64>], limit: f64) -> Option<Trend> {
     let mut ends: Vec<usize> = jumps.to_vec();
     ends.push(values.len());
     let mut start = 0;
@@ -194,8 +214,6 @@ fn trend(times: &[f64], values: &[f64], jumps: &[usize], stds: &[Option<f64>]) -
     let lever = squared_lever.sqrt();
     let std = THEIL_SEN_LOSS * scatter.max(stats::rms(stds.iter().copied().flatten())) / lever;
     let is_slope = slope.abs() > LEAST_SLOPE_STD * std && slope.abs() * lever > f64::EPSILON * 1e3;
-    #[expect(clippy::cast_precision_loss, reason = "six")]
-    let limit = DRIFT_P / AXES as f64;
     let order = in_order(times, values, &stretches);
     let p_value = if order.least_p_value < limit {
         Some(order.p_value)
@@ -319,8 +337,10 @@ mod tests {
         for (count, is_stated) in [(5, false), (5, true), (7, false), (8, false), (10, false), (20, false), (20, true)]
         {
             let found = |seed: u64| drift(&history_of(seed * 7919, count, 0.0, None, is_stated), POINT);
-            let drifts =
-                share(HISTORIES, |seed| found(seed).trends.iter().any(|trend| trend.is_significant == Some(true)));
+            let drifts = share(HISTORIES, |seed| {
+                let found = found(seed);
+                found.point_trends.iter().chain(&found.trends).any(|trend| trend.is_significant == Some(true))
+            });
             let jumps = share(HISTORIES, |seed| !found(seed).jumps.is_empty());
             assert!(drifts <= with_luck(DRIFT_P), "{count}, stated {is_stated}: {drifts} drift");
             assert!(jumps <= with_luck(JUMP_P), "{count}, stated {is_stated}: {jumps} jump");
@@ -333,12 +353,26 @@ mod tests {
         for (count, drift_mm_a_day, is_stated) in [(10, 0.0015, false), (20, 0.0007, false), (5, 0.004, true)] {
             let found = share(200, |seed| {
                 let found = drift(&history_of(seed * 7919, count, drift_mm_a_day, None, is_stated), POINT);
-                found.trends[0].is_significant == Some(true)
+                [found.point_trends[0], found.trends[0]].iter().any(|trend| trend.is_significant == Some(true))
             });
             assert!(found > 0.9, "{count}: {found}");
         }
+        // The point shows a turn that is one σ of each angle a week, as it is three σ of its place.
+        let turning = |seed: u64| {
+            let mut epochs = history_of(seed * 7919, 9, 0.0, None, true);
+            for epoch in &mut epochs {
+                let calibration = &mut epoch.calibration.flange_from_sensor;
+                let turn = so3::exp(Vec3::new(0.0, epoch.at / 7.0 * 0.8 * STD_RAD, 0.0));
+                *calibration = Transform::from_parts(calibration.translation_mm(), turn * calibration.rotation());
+            }
+            drift(&epochs, Vec3::new(0.0, 0.0, 600.0))
+        };
+        let is_found = |trends: &[Trend]| trends.iter().any(|trend| trend.is_significant == Some(true));
+        let by_point = share(200, |seed| is_found(&turning(seed).point_trends));
+        let by_axes = share(200, |seed| is_found(&turning(seed).trends));
+        assert!(by_point > by_axes && by_point > 0.5, "{by_point} and {by_axes}");
         let too_few = drift(&history(6, 0.004, None, false), POINT);
-        assert!(too_few.trends.len() == AXES && too_few.trends.iter().all(|trend| trend.is_significant.is_none()));
+        assert!(too_few.trends.len() == 6 && too_few.trends.iter().all(|trend| trend.is_significant.is_none()));
     }
 
     #[test]

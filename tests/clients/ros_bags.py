@@ -223,6 +223,44 @@ def messages(poses, profiles, has_stamp=True):
             yield "/points", "sensor_msgs/msg/PointCloud2", log_time, point_cloud(said, idx, **profiles)
 
 
+NUM_SWEEPS = 2
+NUM_STEPS = 5
+
+
+def sweep_places():
+    """A robot that steps over a ball along its tool's y, with another orientation the second time."""
+    for sweep in range(NUM_SWEEPS):
+        position, q = place(sweep)
+        along = turned(q, [0.0, 1.0, 0.0])
+        for step in range(NUM_STEPS):
+            yield [p + 0.001 * step * a for p, a in zip(position, along)], q, sweep
+
+
+def sweep_messages():
+    """Stays of 0.7 s at 10 Hz, one behind the other, each with profiles between its poses."""
+    stamp = START_S * 10**9
+    yield "/tf_static", "tf2_msgs/msg/TFMessage", stamp, static_frames(stamp)
+    for position, q, sweep in sweep_places():
+        for _ in range(int(STANDING_S * RATE_HZ)):
+            yield "/tf", "tf2_msgs/msg/TFMessage", stamp, frames(stamp, position, q)
+            between = stamp + 40_000_000
+            yield "/points", "sensor_msgs/msg/PointCloud2", between, point_cloud(between, sweep)
+            stamp += 10**9 // RATE_HZ
+        # On the way nothing is sent; it is short.
+        stamp += 10**9 // RATE_HZ
+
+
+def check_sweeps(session, is_joined):
+    places = list(sweep_places())
+    captures = [capture for station in session["stations"] for capture in station["captures"]]
+    counts = [len(station["captures"]) for station in session["stations"]]
+    assert counts == ([NUM_STEPS] * NUM_SWEEPS if is_joined else [1] * len(places)), f"captures: {counts}"
+    for capture, (position, _, _) in zip(captures, places):
+        found = capture["base_from_flange"]["translation_mm"]
+        apart = max(abs(a - 1000 * b) for a, b in zip(found, position))
+        assert apart < POSE_MM, f"{apart} mm"
+
+
 def write_rosbags(folder, written, plugin, compression=None, is_little_endian=True):
     writer = Rosbag2Writer(folder, version=9, storage_plugin=plugin)
     if compression:
@@ -295,6 +333,11 @@ CASES = {
         SCAN,
     ),
 }
+# Of a robot that stood still at each step of a sweep.
+SWEEPS = {
+    "sweep_mcap": lambda to: write_mcap(to.with_suffix(".mcap"), sweep_messages(), CompressionType.ZSTD),
+    "sweep_db3": lambda to: write_rosbags(to, sweep_messages(), StoragePlugin.SQLITE3),
+}
 # Bags that have to be refused, with a word of the reason.
 REFUSED = {
     "zstd_messages": (
@@ -357,9 +400,9 @@ def check(program):
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
 
-        def run(name):
-            out = folder / f"{name}.json"
-            command = [program, "import", str(written_path(folder, name)), "--target", "point", "--out", str(out)]
+        def run(name, *options):
+            out = folder / f"{name}{len(options)}.json"
+            command = [program, "import", str(written_path(folder, name)), "--target", "point", "--out", str(out), *options]
             return subprocess.run(command, capture_output=True, text=True, timeout=60), out
 
         for name, (write, kind) in CASES.items():
@@ -372,6 +415,17 @@ def check(program):
             except AssertionError as error:
                 print(f"failed: {name}: {error}")
                 failed += 1
+        for name, write in SWEEPS.items():
+            write(folder / name)
+            for options in ([], ["--separate-stays"]):
+                done, out = run(name, *options)
+                try:
+                    assert done.returncode == 0, done.stderr
+                    check_sweeps(json.loads(out.read_text()), not options)
+                    print(f"ok: {name} {' '.join(options)}")
+                except AssertionError as error:
+                    print(f"failed: {name} {options}: {error}")
+                    failed += 1
         for name, (write, reason) in REFUSED.items():
             write(folder / name)
             done, _ = run(name)

@@ -1,6 +1,7 @@
 //! Document, results, jobs and notices, changed only by commands and finished jobs.
 
 mod cell;
+pub mod comparing;
 mod edits;
 mod exports;
 mod files;
@@ -18,6 +19,7 @@ use std::sync::Arc;
 use crate::calibrate::validation::Bootstrap;
 use crate::diagnose::{Diagnosis, ReadingFit};
 use crate::plan::{Limits, Plan, PlanRefusal};
+use crate::report::open::NotOpened;
 use crate::session::edit::CellValue;
 use crate::verify::{Calibration, Verification};
 use crate::watch::Cancelled;
@@ -28,6 +30,7 @@ use super::study::Study;
 use super::{Command, Document};
 
 use self::cell::LiveCell;
+use self::comparing::{Compared, FolderRead};
 use self::exports::Exported;
 use self::files::{Loaded, Look, Save, SaveOutcome};
 pub use self::imports::ImportDraft;
@@ -111,11 +114,14 @@ pub struct Workbench {
     /// Calibrations from elsewhere, judged along with the session's own.
     given: Vec<Calibration>,
     adding: Slot<Added>,
+    comparison: Study<Compared>,
+    result_history: Study<FolderRead>,
     imports: Imports,
     exporting: Slot<Exported>,
     scans: Scans,
     report: Study<Arc<Gathered>>,
     reporting: Slot<(Option<u64>, Reported)>,
+    opening: Slot<Result<(), NotOpened>>,
     written_report: Option<PathBuf>,
     cell: LiveCell,
 }
@@ -151,11 +157,14 @@ impl Workbench {
             verifies_later: false,
             given: Vec::new(),
             adding: Slot::default(),
+            comparison: Study::default(),
+            result_history: Study::default(),
             imports: Imports::default(),
             exporting: Slot::default(),
             scans: Scans::default(),
             report: Study::default(),
             reporting: Slot::default(),
+            opening: Slot::default(),
             written_report: None,
             cell: LiveCell::default(),
         }
@@ -270,11 +279,14 @@ impl Workbench {
             || self.bootstrap.is_running()
             || self.verification.is_running()
             || self.adding.is_running()
+            || self.comparison.is_running()
+            || self.result_history.is_running()
             || self.imports.is_busy()
             || self.exporting.is_running()
             || self.scans.is_busy()
             || self.report.is_running()
             || self.reporting.is_running()
+            || self.opening.is_running()
     }
 
     /// Carries out one command.
@@ -325,10 +337,15 @@ impl Workbench {
             Command::AddFurther(path) => self.start_adding_further(path),
             Command::GiveCalibration(calibration) => self.give_calibration(*calibration),
             Command::WithdrawCalibration(name) => self.withdraw_calibration(&name),
+            Command::CompareCalibrations(sides) => self.compare_calibrations(*sides),
+            Command::CancelComparison => self.comparison.cancel(),
+            Command::ReadResultHistory(folder) => self.read_result_history(folder),
+            Command::CancelResultHistory => self.result_history.cancel(),
             Command::Scan(command) => self.command_scans(*command),
             Command::Cell(command) => self.command_cell(*command),
             Command::GatherReport => self.gather_report(),
             Command::CancelReport => self.report.cancel(),
+            Command::OpenReport => self.open_report(),
             Command::WriteReport { folder, options } => self.write_report(folder, *options),
             Command::Tell(kind, message) => self.notify(kind, message),
             Command::DismissNotice(id) => self.notices.retain(|notice| notice.id != id),
@@ -367,6 +384,8 @@ impl Workbench {
             ("the bootstrap", self.bootstrap.poll()),
             ("verifying", self.verification.poll()),
             ("gathering the report", self.report.poll()),
+            ("comparing", self.comparison.poll()),
+            ("reading the history", self.result_history.poll()),
         ] {
             let Some(ended) = ended else { continue };
             changed = true;
@@ -379,7 +398,7 @@ impl Workbench {
             self.take_added(outcome);
         }
         let imported = self.poll_imports();
-        let exported = self.poll_exports() | self.poll_scans() | self.poll_report();
+        let exported = self.poll_exports() | self.poll_scans() | self.poll_report() | self.poll_opening();
         // Last, as a run goes on once the results of its last station are there.
         let cell = self.poll_cell();
         self.verify_what_waited();

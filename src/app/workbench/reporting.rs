@@ -1,6 +1,6 @@
 //! The report: what it is made of is gathered in the background, and so it is written.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::app;
@@ -8,8 +8,11 @@ use crate::app::jobs::JobOutcome;
 use crate::report::document::{Document, InputFile, Options, document};
 use crate::report::evidence::Evidence;
 use crate::report::files::{HTML, report_files, write_files};
-use crate::session;
+use crate::report::open::open;
+use crate::session::{self, format::Stamp};
+use crate::text::report as text;
 use crate::text::report_panel as words;
+use crate::verify::{Calibration, Origin};
 
 use super::{NoticeKind, Workbench};
 
@@ -32,6 +35,26 @@ impl Gathered {
     }
 }
 
+/// What has become of a file since it was read.
+fn since(path: &Path, stamp: &Stamp) -> Option<&'static str> {
+    match Stamp::of(path) {
+        Ok(now) if now.has_contents_of(stamp) => None,
+        Ok(_) => Some(text::CHANGED_SINCE),
+        Err(_) => Some(text::GONE_SINCE),
+    }
+}
+
+/// A calibration that came without a file.
+fn pasted(calibration: &Calibration) -> InputFile {
+    let name = match &calibration.origin {
+        Origin::Given { name, .. } => name.clone(),
+        Origin::Solved { .. } | Origin::Joint { .. } => String::new(),
+    };
+    let matrix = calibration.flange_from_sensor.matrix();
+    let rows: [[f64; 4]; 4] = [0, 1, 2, 3].map(|row| [0, 1, 2, 3].map(|column| matrix[(row, column)]));
+    InputFile::new(name, serde_json::json!(rows).to_string().as_bytes()).with_remark(Some(text::PASTED))
+}
+
 /// What came of writing: the page to be opened and the number of files beside it, or why not.
 pub(super) type Reported = Result<(PathBuf, usize), String>;
 
@@ -51,14 +74,15 @@ impl Workbench {
     pub(super) fn gather_report(&mut self) {
         let Some(open) = &self.document else { return };
         let (session, revision, given) = (Arc::clone(&open.session), open.revision, self.given.clone());
-        let file = open.path.clone().filter(|_| !open.is_unsaved());
+        let file = open.path.clone().zip(open.stamp).filter(|_| !open.is_unsaved());
         let title = open.title();
         self.report.start("gather report", &self.wake, revision, move |watch| {
             let evidence = Evidence::gather(&session, &given, watch)?;
-            // What is on the disk is what was read; what is not saved is told as it would be saved.
-            let bytes = file.and_then(|path| std::fs::read(path).ok());
-            let bytes = bytes.unwrap_or_else(|| session::to_json(&session).into_bytes());
-            let inputs = vec![InputFile::new(title, &bytes)];
+            let of_session = match file {
+                Some((path, stamp)) => InputFile::stamped(title, &stamp).with_remark(since(&path, &stamp)),
+                None => InputFile::new(title, session::to_json(&session).as_bytes()).with_remark(Some(text::NOT_SAVED)),
+            };
+            let inputs: Vec<InputFile> = std::iter::once(of_session).chain(given.iter().map(pasted)).collect();
             let document = document(&evidence, &inputs, &Options::default());
             Ok(Arc::new(Gathered { evidence, inputs, document }))
         });
@@ -76,6 +100,23 @@ impl Workbench {
                 .and_then(|files| write_files(&files, &folder).map_err(|error| error.to_string()));
             (of_document, written.map(|paths| (folder.join(HTML), paths.len())))
         });
+    }
+
+    /// Opens the page that was written last.
+    pub(super) fn open_report(&mut self) {
+        let Some(page) = self.written_report.clone() else { return };
+        self.opening.start("open report", &self.wake, move |_| open(&page));
+    }
+
+    pub(super) fn poll_opening(&mut self) -> bool {
+        let Some(outcome) = self.opening.poll() else { return false };
+        match outcome {
+            // The browser shows it.
+            JobOutcome::Done(Ok(())) => {}
+            JobOutcome::Done(Err(error)) => self.notify(NoticeKind::Error, error.to_string()),
+            broken => self.notify_broken("opening the report", &broken),
+        }
+        true
     }
 
     pub(super) fn poll_report(&mut self) -> bool {

@@ -44,6 +44,9 @@ pub struct BagArgs {
     /// Standing still, it turns no further, degrees (0.02).
     #[arg(long, value_name = "DEG", value_parser = positive)]
     pub still_within_deg: Option<f64>,
+    /// Stays along a line, with one orientation, are stations each, and not one sweep.
+    #[arg(long)]
+    pub separate_stays: bool,
 }
 
 /// Which time counts.
@@ -97,6 +100,7 @@ impl BagArgs {
             still_for_s: self.still_for_s.unwrap_or(usual.still_for_s),
             still_within_mm: self.still_within_mm.unwrap_or(usual.still_within_mm),
             still_within_deg: self.still_within_deg.unwrap_or(usual.still_within_deg),
+            joins_stays: !self.separate_stays,
         }
     }
 }

@@ -4,12 +4,14 @@ mod model;
 mod section;
 mod sections;
 
+use crate::session::format::Stamp;
 use crate::text::report as words;
 
+use super::checksum;
 use super::evidence::Evidence;
 use super::figure::figures_of;
 
-pub use model::{Block, Cell, Column, Document, Fact, Finding, Section, Table, Verdict, typeset};
+pub use model::{Block, Cell, Column, Document, Fact, Finding, Section, Table, Verdict, typeset, typeset_numbers};
 pub use section::{Options, SectionId};
 pub use sections::tool_frames::{Export, exports};
 
@@ -22,13 +24,27 @@ pub struct InputFile {
     pub num_bytes: usize,
     /// Its SHA-256, as `sha256sum` prints it.
     pub sha256: String,
+    /// What a reader who looks for the file has to know: that it is another by now, or none.
+    pub remark: Option<&'static str>,
 }
 
 impl InputFile {
     /// Of a file's bytes.
     #[must_use]
     pub fn new(name: String, bytes: &[u8]) -> Self {
-        Self { name, num_bytes: bytes.len(), sha256: super::checksum::sha256(bytes) }
+        Self { name, num_bytes: bytes.len(), sha256: checksum::sha256(bytes), remark: None }
+    }
+
+    /// Of the file that a stamp is of, as it was then.
+    #[must_use]
+    pub fn stamped(name: String, stamp: &Stamp) -> Self {
+        Self { name, num_bytes: stamp.num_bytes(), sha256: checksum::hexadecimal(&stamp.sha256()), remark: None }
+    }
+
+    /// The same with a remark.
+    #[must_use]
+    pub fn with_remark(self, remark: Option<&'static str>) -> Self {
+        Self { remark, ..self }
     }
 }
 

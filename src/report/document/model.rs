@@ -147,6 +147,8 @@ pub struct Column {
     pub unit: Option<&'static str>,
     /// The name of the column in the CSV file, with its unit.
     pub csv_name: String,
+    /// The names of further columns in the CSV file, for what a cell says in words beside its first figure.
+    pub further_csv_names: Vec<String>,
     /// Whether it holds figures, which stand aligned on the right.
     pub is_number: bool,
 }
@@ -158,6 +160,8 @@ pub struct Cell {
     pub text: String,
     /// With all digits, for the CSV file; text alone is written as it stands.
     pub value: Option<f64>,
+    /// The figures of the further columns of the CSV file.
+    pub further: Vec<f64>,
     /// Whether it stands out.
     pub is_strong: bool,
 }
@@ -174,13 +178,27 @@ impl Column {
     /// A column of words.
     #[must_use]
     pub fn words(title: impl Into<String>, csv_name: impl Into<String>) -> Self {
-        Self { title: title.into(), group: None, unit: None, csv_name: csv_name.into(), is_number: false }
+        Self {
+            title: title.into(),
+            group: None,
+            unit: None,
+            csv_name: csv_name.into(),
+            further_csv_names: Vec::new(),
+            is_number: false,
+        }
+    }
+
+    /// A column of words that stand for several figures, of which the CSV file has a column each.
+    #[must_use]
+    pub fn figures(title: impl Into<String>, csv_name: &str, further: &[&str]) -> Self {
+        let further_csv_names = further.iter().map(|name| (*name).to_owned()).collect();
+        Self { further_csv_names, ..Self::words(title, csv_name) }
     }
 
     /// A column of figures.
     #[must_use]
     pub fn number(title: impl Into<String>, unit: Option<&'static str>, csv_name: impl Into<String>) -> Self {
-        Self { title: title.into(), group: None, unit, csv_name: csv_name.into(), is_number: true }
+        Self { unit, is_number: true, ..Self::words(title, csv_name) }
     }
 
     /// Three columns x, y, z in mm under one heading; `csv_name` is what stands before the axis.
@@ -212,13 +230,19 @@ impl Cell {
         if !value.is_finite() {
             return Self::missing();
         }
-        Self { text: typeset(&digits::fixed(value, decimals)), value: Some(value), is_strong: false }
+        Self { text: typeset(&digits::fixed(value, decimals)), value: Some(value), ..Self::default() }
     }
 
     /// A standard deviation or an error by itself: two digits of it, and no more than a tenth of a micrometre.
     #[must_use]
     pub fn size(value: f64) -> Self {
         Self::number(value, digits::decimals_for(Some(value.abs())).min(4))
+    }
+
+    /// Words that stand for several figures.
+    #[must_use]
+    pub fn figures(text: impl Into<String>, value: f64, further: Vec<f64>) -> Self {
+        Self { text: text.into(), value: Some(value), further, is_strong: false }
     }
 
     /// A difference: with its sign.
@@ -232,7 +256,7 @@ impl Cell {
     pub fn count(count: usize) -> Self {
         #[expect(clippy::cast_precision_loss, reason = "counts of stations and points")]
         let value = count as f64;
-        Self { text: count.to_string(), value: Some(value), is_strong: false }
+        Self { text: count.to_string(), value: Some(value), ..Self::default() }
     }
 
     /// Nothing is known.
@@ -254,8 +278,36 @@ impl Cell {
     }
 }
 
+/// A sentence with true minus signs before its numbers; hyphens stay in words.
+#[must_use]
+pub fn typeset_numbers(sentence: &str) -> String {
+    let begins_with_digit = |rest: &str| rest.starts_with(|c: char| c.is_ascii_digit());
+    let words = sentence.split(' ').map(|word| {
+        let is_number = word.trim_start_matches(['(', '+', '±']).strip_prefix('-').is_some_and(begins_with_digit);
+        if is_number { typeset(word) } else { word.to_owned() }
+    });
+    words.collect::<Vec<String>>().join(" ")
+}
+
 /// With the true minus sign, as wide as the plus.
 #[must_use]
 pub fn typeset(number: &str) -> String {
     number.replace('-', "−")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn minus_signs_are_true_and_hyphens_stay_hyphens() {
+        for (sentence, expected) in [
+            ("off by -0.5 mm", "off by −0.5 mm"),
+            ("weakest along (-0.2, -0.4, 0.9)", "weakest along (−0.2, −0.4, 0.9)"),
+            ("left-out hand-eye 5-10", "left-out hand-eye 5-10"),
+            ("2026-11-22 - -x", "2026-11-22 - -x"),
+        ] {
+            assert_eq!(typeset_numbers(sentence), expected);
+        }
+    }
 }

@@ -21,6 +21,8 @@ const TICK_GAP: f64 = 3.5;
 const TICK_HEIGHT: f64 = 11.0;
 /// Height of a title of an axis, points.
 pub(super) const TITLE_HEIGHT: f64 = 11.0;
+/// A note farther off than this, points, is led to its mark by a line.
+const LEADER_FROM: f64 = 11.0;
 /// Marks of the y axis stand at least this far apart, points; in a low plot closer, so that it has more than one.
 const Y_SPACING: [f64; 3] = [20.0, 14.0, 9.5];
 /// Labels of the x axis have at least this gap between them, points.
@@ -315,7 +317,13 @@ impl Frame<'_> {
                 continue;
             }
             if let Some(label) = self.placed(note, at, &crowd, page) {
-                let ground = label.area().grown(1.0).outline().to_vec();
+                let area = label.area();
+                let near = [0, 1].map(|axis| at[axis].clamp(area.min[axis], area.max[axis]));
+                // So far off that it could belong to another mark.
+                if (near[0] - at[0]).hypot(near[1] - at[1]) > LEADER_FROM {
+                    page.line(vec![at, near], Stroke::new(0.5, palette::TEXT_DIM), Dash::Solid);
+                }
+                let ground = area.grown(1.0).outline().to_vec();
                 page.area(ground, Fill::veil(Rgb::WHITE, 0.75));
                 page.write(label);
             }

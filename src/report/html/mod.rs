@@ -46,8 +46,14 @@ pub fn html(document: &Document) -> Result<String, FigureError> {
         let id = section.id.id();
         writeln!(out, "<section id=\"{id}\" aria-labelledby=\"{id}-title\">").ok();
         writeln!(out, "<h2 id=\"{id}-title\">{}</h2>", escaped(&section.title)).ok();
-        for block in &section.blocks {
-            write_block(&mut out, block)?;
+        for (idx, block) in section.blocks.iter().enumerate() {
+            match (block, section.blocks.get(idx + 1)) {
+                // What leads to something stays with it on a page.
+                (Block::Paragraph(text), Some(next)) if !matches!(next, Block::Paragraph(_)) => {
+                    writeln!(out, "<p class=\"lead\">{}</p>", escaped(text)).ok();
+                }
+                _ => write_block(&mut out, block)?,
+            }
         }
         out.push_str("</section>\n");
     }

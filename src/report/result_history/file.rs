@@ -4,11 +4,11 @@
 use serde_json::{Value, json};
 
 use crate::verify::difference::{Difference, Known, PointShift, SIGNIFICANT_P};
-use crate::verify::drift::Change;
+use crate::verify::drift::{Change, Trend};
 
 use super::super::diagnosis_entry::vector;
 use super::super::result_file::transform;
-use super::{Compared, ComparedPoints, History, Order};
+use super::{Compared, Comparison, Course, History, Order, Shared};
 
 /// The format's name of a comparison.
 pub const COMPARISON_FORMAT: &str = "handeye-comparison";
@@ -19,12 +19,18 @@ pub const VERSION: u32 = 1;
 
 /// Two calibrations as a JSON document.
 #[must_use]
-pub fn comparison_file(from: &Compared, to: &Compared, difference: &Difference, points: &ComparedPoints) -> Value {
+pub fn comparison_file(comparison: &Comparison) -> Value {
+    let Comparison { from, to, shared, difference, points } = comparison;
     json!({
         "format": COMPARISON_FORMAT,
         "version": VERSION,
         "from": calibration_entry(from),
         "to": calibration_entry(to),
+        "shared": match shared {
+            Shared::Nothing => Value::Null,
+            Shared::File => json!("file"),
+            Shared::Data => json!("data"),
+        },
         "difference": difference_entry(difference),
         "reference_point": points.reference.as_ref().map(shift_entry),
         "points": points.given.iter().map(shift_entry).collect::<Vec<_>>(),
@@ -46,8 +52,8 @@ pub fn history_file(history: &History) -> Value {
             entry
         })
         .collect();
-    let axes = ["x_mm", "y_mm", "z_mm", "about_x_deg", "about_y_deg", "about_z_deg"];
-    let trends = history.drift.trends.iter().zip(axes).enumerate();
+    let trends: Vec<Trend> = history.shown_trends().collect();
+    let (of_point, of_axes) = trends.split_at(history.drift.point_trends.len());
     json!({
         "format": HISTORY_FORMAT,
         "version": VERSION,
@@ -57,20 +63,28 @@ pub fn history_file(history: &History) -> Value {
         },
         "reference_point_in_sensor_mm": vector(history.reference_point_in_sensor_mm),
         "calibrations": entries,
-        "trends": trends
-            .map(|(idx, (trend, axis))| {
-                let in_unit = |value: f64| if idx < 3 { value } else { value.to_degrees() };
-                json!({
-                    "axis": axis,
-                    "slope": in_unit(trend.slope),
-                    "std": in_unit(trend.std),
-                    "at_first": in_unit(trend.at_first),
-                    "is_significant": trend.is_significant,
-                })
-            })
-            .collect::<Vec<_>>(),
+        "course": match history.course() {
+            Course::Steady => "steady",
+            Course::Moved => "moved",
+            Course::Unknown => "unknown",
+        },
+        "point_trends": trend_entries(of_point, &["x_mm", "y_mm", "z_mm"]),
+        "trends": trend_entries(of_axes, &["x_mm", "y_mm", "z_mm", "about_x_deg", "about_y_deg", "about_z_deg"]),
         "left_out": history.left_out,
     })
+}
+
+fn trend_entries(trends: &[Trend], axes: &[&str]) -> Vec<Value> {
+    let entry = |(trend, axis): (&Trend, &&str)| {
+        json!({
+            "axis": axis,
+            "slope": trend.slope,
+            "std": trend.std,
+            "at_first": trend.at_first,
+            "is_significant": trend.is_significant,
+        })
+    };
+    trends.iter().zip(axes).map(entry).collect()
 }
 
 fn calibration_entry(calibration: &Compared) -> Value {
@@ -102,6 +116,7 @@ fn difference_entry(difference: &Difference) -> Value {
             Known::None => "none",
             Known::One => "one",
             Known::Both => "both",
+            Known::SameData => "same data",
         },
     })
 }

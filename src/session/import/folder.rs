@@ -89,6 +89,12 @@ fn split_bags(files: Named) -> Result<(Named, Bags), ImportError> {
     }
     let is_metadata = |path: &Path| path.ends_with(METADATA) && bags.iter().any(|bag| path.parent() == Some(&bag.0));
     others.retain(|(path, _)| !is_metadata(path));
+    if bags.is_empty()
+        && let [(path, _)] = others.as_slice()
+        && let Some(error) = bag::only_metadata(path)
+    {
+        return Err(error.into());
+    }
     Ok((others, bags.into_iter().map(|(_, name, files)| (name, files)).collect()))
 }
 

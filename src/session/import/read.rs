@@ -30,6 +30,14 @@ impl Progress<'_> {
     pub fn tick(&mut self) -> Result<(), Cancelled> {
         self.watch.report(self.done, self.total)
     }
+
+    /// The same within a source that takes long.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn tick_within(&mut self, done: usize, total: usize) -> Result<(), Cancelled> {
+        self.watch.report(done.min(total), total)
+    }
 }
 
 /// Reads sources; see [`super::read()`].

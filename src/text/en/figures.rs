@@ -91,14 +91,20 @@ pub fn of_target(title: &str, target: &str) -> String {
 }
 
 /// Heading of errors that the other stations see.
-pub const LEFT_OUT: &str = "Left out: each against the calibration made without it";
+#[must_use]
+pub const fn left_out(target: &Target) -> &'static str {
+    match target {
+        Target::RightAnglePlate => "Left out: distance from the edge found without the station",
+        _ => "Left out: distance (3D) from what the calibration made without the station predicts",
+    }
+}
 
 /// Heading of errors as in the tables.
 #[must_use]
 pub const fn in_sample(target: &Target) -> &'static str {
     match target {
         Target::RightAnglePlate => "In sample: distance from the edge",
-        _ => "In sample: distance from the mean of all stations",
+        _ => "In sample: distance (3D) from the mean of all stations",
     }
 }
 
@@ -113,9 +119,9 @@ pub const fn errors_title(target: &Target) -> &'static str {
 
 /// What the bars tell a reader who does not see them.
 #[must_use]
-pub fn errors_alt(title: &str, worst_mm: impl Iterator<Item = (Method, f64)>) -> String {
+pub fn errors_alt(target: &Target, title: &str, worst_mm: impl Iterator<Item = (Method, f64)>) -> String {
     let worst: Vec<String> = worst_mm.map(|(method, mm)| format!("{} {mm:.3} mm", method_name(method))).collect();
-    format!("{title}. Largest error in sample: {}.", worst.join(", "))
+    format!("{title}. {}, the largest: {}.", in_sample(target), worst.join(", "))
 }
 
 /// Caption of the scatter of the target.
@@ -172,27 +178,23 @@ pub fn halves_alt(title: &str, median_mm: &str, expected_mm: &str) -> String {
     format!("{title}. Median {median_mm} mm apart, expected {expected_mm} mm.")
 }
 
-fn without(num_left_out: usize) -> String {
-    match num_left_out {
-        0 => String::new(),
-        1 => "; one calibration that is far off is not shown".to_owned(),
-        _ => format!("; {num_left_out} calibrations that are farther off are not shown"),
-    }
+fn without(left_out: &[&str]) -> String {
+    if left_out.is_empty() { String::new() } else { format!("; farther off and not shown: {}", left_out.join(" · ")) }
 }
 
 /// Caption of distances to lines and plane.
 #[must_use]
-pub fn distances_title(target: &str, num_left_out: usize) -> String {
-    format!("Distances of the points from their lines and from the plane: {target}{}", without(num_left_out))
+pub fn distances_title(target: &str, left_out: &[&str]) -> String {
+    format!("Distances of the points from their lines and from the plane: {target}{}", without(left_out))
 }
 
 /// Caption of the stability at a point.
 #[must_use]
-pub fn stability_title(target: &str, is_touched: bool, num_left_out: usize) -> String {
+pub fn stability_title(target: &str, is_touched: bool, left_out: &[&str]) -> String {
     let from = if is_touched { "the touched point" } else { "the mean" };
     format!(
         "One point measured many times, against {from}, and at the right its mean ± 3δ: {target}{}",
-        without(num_left_out)
+        without(left_out)
     )
 }
 
@@ -201,7 +203,7 @@ pub const THREE_DELTA: &str = "±3δ";
 /// Axis title.
 pub const MEASUREMENT_AXIS: &str = "measurement";
 /// Axis title.
-pub const RMS_AXIS: &str = "RMS error / mm, logarithmic";
+pub const RMS_AXIS: &str = "RMS distance (3D) / mm, logarithmic";
 /// Legend of errors on own data.
 pub const OWN_DATA: &str = "hollow: own data, in sample";
 /// Caption of the cross-target figure.
@@ -255,10 +257,11 @@ pub const FLANGE: &str = "flange at each station";
 /// Legend of laser planes.
 pub const LASER_PLANE: &str = "laser plane";
 
-/// Legend of the target.
+/// Legend of the target; `is_point` where only one place of it is known.
 #[must_use]
-pub const fn target(target: &Target) -> &'static str {
+pub const fn target(target: &Target, is_point: bool) -> &'static str {
     match target {
+        Target::Ball { .. } if is_point => "ball's centre",
         Target::Ball { .. } => "ball",
         Target::RightAnglePlate => "plate",
         Target::Point => "tip",
@@ -270,8 +273,7 @@ pub const fn target(target: &Target) -> &'static str {
 
 /// Caption of the sketch.
 #[must_use]
-pub fn setup_title(of: &Target, num_stations: usize, is_fixed: bool) -> String {
-    let target = target(of);
+pub fn setup_title(target: &str, num_stations: usize, is_fixed: bool) -> String {
     if is_fixed {
         format!("The set-up: fixed sensor, {num_stations} poses of the flange with the {target}, without perspective")
     } else {

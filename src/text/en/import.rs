@@ -388,6 +388,11 @@ pub fn outcome(imported: &Imported) -> String {
         (profiles, points) => format!(" with {} and {}", count(profiles, "profile"), count(points, "point")),
     };
     let stations = count(imported.stations.len(), "station");
+    // What of a bag was left out stands with its topics.
+    let is_of_bag = imported.notes.iter().any(|note| matches!(note, Note::Bag(_)));
+    if is_of_bag && imported.num_problems == 0 {
+        return format!("{stations}{with}");
+    }
     format!("{stations}{with}; {}", left_out(imported.num_problems))
 }
 

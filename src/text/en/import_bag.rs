@@ -1,7 +1,7 @@
 //! Wording of imports from ROS 2 bags, in the window and on the command line.
 
 use crate::geometry::notation::LengthUnit;
-use crate::session::import::bag::{Bag, BagReport, Clock, MessageKind, ProfileAxes, Taking, Topic};
+use crate::session::import::bag::{Bag, BagReport, Clock, ListedFrame, MessageKind, ProfileAxes, Taking, Topic};
 
 use super::shell::count;
 
@@ -22,13 +22,24 @@ pub const AXES: &str = "x, z of profiles";
 /// Row.
 pub const CLOCK: &str = "times";
 /// Row.
-pub const PAIR_WITHIN: &str = "pair within ms";
+pub const PAIR_WITHIN: &str = "pair within / ms";
 /// Row.
-pub const STILL_FOR: &str = "still for s";
+pub const STILL_FOR: &str = "still for / s";
 /// Row.
-pub const STILL_WITHIN_MM: &str = "within mm";
+pub const STILL_WITHIN_MM: &str = "still within / mm";
 /// Row.
-pub const STILL_WITHIN_DEG: &str = "within °";
+pub const STILL_WITHIN_DEG: &str = "still within / °";
+/// Checkbox.
+pub const JOIN: &str = "join stays along a line into sweeps";
+/// What it does.
+pub const JOIN_HINT: &str =
+    "At least three stays with one orientation, each a step ahead on a line, become one station: a sweep over the ball";
+/// Title of the card with the topics.
+pub const TOPICS: &str = "What the bag holds, and what becomes of it";
+/// Heads of its table.
+pub const TOPIC_COLUMNS: [&str; 6] = ["topic", "type", "messages", "first / s", "last / s", "gives"];
+/// What the times are counted from.
+pub const TIMES_FROM: &str = "seconds from the beginning of the recording";
 /// Why a number is not taken.
 pub const NEGATIVE: &str = "type a number from 0 on";
 /// Where a bag has no such topic.
@@ -59,6 +70,44 @@ pub fn axes(axes: ProfileAxes, unit: LengthUnit) -> String {
     format!("x and z of the profiles are {} and {} of the messages, in {}", axes.x, axes.z, unit.symbol())
 }
 
+/// A frame as it is offered: with the one that it hangs below.
+#[must_use]
+pub fn frame_choice(frame: &ListedFrame) -> String {
+    match &frame.parent {
+        Some(parent) if frame.is_static => format!("{} (fixed in {parent})", frame.name),
+        Some(parent) => format!("{} (in {parent})", frame.name),
+        None => frame.name.clone(),
+    }
+}
+
+/// The frame that poses are in by their headers.
+#[must_use]
+pub fn pose_frame(frame: &str) -> String {
+    if frame.is_empty() { "poses name no frame".to_owned() } else { format!("poses are in {frame}") }
+}
+
+/// The type without the package, which all messages of a kind share.
+#[must_use]
+pub fn short_type(type_name: &str) -> &str {
+    type_name.rsplit('/').next().unwrap_or(type_name)
+}
+
+/// A time of the recording in seconds from its beginning.
+#[must_use]
+pub fn seconds(time_ns: i64, start_ns: i64) -> String {
+    #[expect(clippy::cast_precision_loss, reason = "shown to a tenth of a second")]
+    let seconds = time_ns.saturating_sub(start_ns) as f64 / 1e9;
+    format!("{seconds:.1}")
+}
+
+/// What will come of a bag.
+#[must_use]
+pub fn will_become(report: &BagReport, num_stations: usize, num_captures: usize) -> String {
+    let what = if report.profile_topic.is_some() { (report.num_paired, "pair") } else { (report.num_poses, "pose") };
+    let pairs = count(what.0, what.1);
+    format!("{pairs} → {}, {}", count(num_stations, "station"), count(num_captures, "capture"))
+}
+
 /// What a topic gives.
 #[must_use]
 pub const fn gives(kind: Option<MessageKind>) -> &'static str {
@@ -70,17 +119,26 @@ pub const fn gives(kind: Option<MessageKind>) -> &'static str {
     }
 }
 
-/// A topic in a line.
+/// The same in a table, and whether it is in use.
 #[must_use]
-pub fn topic_line(topic: &Topic) -> String {
-    let Topic { name, type_name, kind, num_messages } = topic;
-    format!("  {name}  {type_name}  {num_messages}  {}\n", gives(*kind))
+pub fn gives_in_table(kind: Option<MessageKind>, is_in_use: bool) -> String {
+    let gives = if kind == Some(MessageKind::Transforms) { "frames" } else { gives(kind) };
+    if is_in_use { format!("{gives}, in use") } else { gives.to_owned() }
+}
+
+/// A topic in a line.
+fn topic_line(topic: &Topic, start_ns: Option<i64>) -> String {
+    let Topic { name, type_name, kind, num_messages, .. } = topic;
+    let times = topic.recorded_ns.zip(start_ns).map_or_else(String::new, |([first, last], start_ns)| {
+        format!("  {} to {} s", seconds(first, start_ns), seconds(last, start_ns))
+    });
+    format!("  {name}  {type_name}  {num_messages}{times}  {}\n", gives(*kind))
 }
 
 /// The topics of a bag.
 #[must_use]
 pub fn topics(name: &str, bag: &Bag) -> String {
-    let lines: String = bag.topics.iter().map(topic_line).collect();
+    let lines: String = bag.topics.iter().map(|topic| topic_line(topic, bag.start_ns())).collect();
     format!("{name}: {}\n{lines}", count(bag.topics.len(), "topic"))
 }
 
@@ -91,6 +149,10 @@ pub fn report(report: &BagReport) -> String {
     let mut said = vec![format!("{} from {}{frames}", count(report.num_poses, "pose"), report.pose_topic)];
     if let Some(num_stays) = report.num_stays {
         said.push(format!("the robot stood still {}", times(num_stays)));
+    }
+    if report.num_sweeps > 0 {
+        let (stays, sweeps) = (count(report.num_joined_stays, "stay"), count(report.num_sweeps, "sweep"));
+        said.push(format!("{stays} along lines joined into {sweeps}"));
     }
     if let Some(topic) = &report.profile_topic {
         said.push(format!("{} from {topic}, {} paired", count(report.num_profiles, "profile"), report.num_paired));

@@ -12,12 +12,6 @@ pub fn no_such_section(ids: &[&str]) -> String {
     format!("expected one of: {}", ids.join(", "))
 }
 
-/// A file that went away while it was read.
-#[must_use]
-pub fn unreadable(file: &str, problem: &std::io::Error) -> String {
-    format!("cannot read {file}: {problem}")
-}
-
 /// The report says why there is nothing in it.
 #[must_use]
 pub fn report_without_calibration(reason: &str) -> String {

@@ -74,6 +74,8 @@ pub const WRITING: &str = "Writing the report …";
 pub const REPORT_FOLDER_TITLE: &str = "Folder for the report";
 /// Button.
 pub const COPY_PATH: &str = "Copy path";
+/// Button.
+pub const OPEN_IN_BROWSER: &str = "Open in browser";
 /// Name of the picture of the page for screen readers.
 pub const PREVIEW: &str = "Preview of the report";
 /// Where no section is chosen.

@@ -237,7 +237,9 @@ pub const NOT_SAVED: &str = "not saved yet";
 /// Stations in all and those taking part.
 #[must_use]
 pub fn stations_in_use(num_enabled: usize, num_stations: usize) -> String {
-    if num_enabled == num_stations {
+    if num_stations == 0 {
+        "none".to_owned()
+    } else if num_enabled == num_stations {
         format!("{num_stations}, all in use")
     } else {
         format!("{num_stations}, {num_enabled} in use")

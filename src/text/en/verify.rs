@@ -10,11 +10,11 @@ use super::methods::{method_name, method_short_name};
 /// Where no session is open.
 pub const NO_SESSION: &str = "Open a session to see what its calibration is worth on other data.";
 /// Heading of a section.
-pub const DISTANCES: &str = "Distances to lines and plane";
+pub const DISTANCES: &str = "Distances";
 /// Heading of a section.
-pub const STABILITY: &str = "Stability at a known point";
+pub const STABILITY: &str = "Stability";
 /// Heading of a section.
-pub const CROSS_TARGET: &str = "On other targets";
+pub const CROSS_TARGET: &str = "Other targets";
 /// Heading of a section.
 pub const WORKPIECE: &str = "Workpiece";
 /// While the first verification is under way.

@@ -1,22 +1,31 @@
-//! The settings of ROS 2 bags: topics, frames, what becomes a capture, and how poses and profiles find each other.
+//! ROS 2 bags: the topics that there are with what comes of them, and the settings: topics, frames, what becomes a capture,
+//! and how poses and profiles find each other.
 
-use egui::Ui;
+use egui::{Align2, Frame, Margin, ScrollArea, Ui};
 
-use crate::session::import::ImportOptions;
-use crate::session::import::bag::{Bag, BagOptions, Clock, MessageKind, ProfileAxes, Taking, Topic};
+use crate::session::import::bag::{
+    Bag, BagOptions, BagReport, Clock, ListedFrame, MessageKind, ProfileAxes, Taking, Topic,
+};
+use crate::session::import::{ImportOptions, Imported, Note};
 use crate::session::table::number::parse_number;
 use crate::text::import as import_words;
 use crate::text::import_bag as words;
-use crate::ui::theme;
+use crate::ui::compare::table::RowCells;
+use crate::ui::{theme, widgets};
 
 use super::fields;
 use super::settings::Set;
 
+/// Parts of a row of the topics: name, type, messages, first, last, what it gives.
+const TOPIC_PARTS: [f32; 6] = [0.26, 0.2, 0.12, 0.11, 0.11, 0.2];
+/// Rows of topics in sight at once.
+const MOST_TOPICS: f32 = 6.5;
+
 /// What is being typed.
 #[derive(Debug, Default)]
 pub struct Typed {
-    base_frame: Text,
-    flange_frame: Text,
+    /// The frames of the bag as they were listed last: where two that do not hang together are chosen, nothing is read.
+    frames: Vec<ListedFrame>,
     pair_within: Text,
     still_for: Text,
     still_within_mm: Text,
@@ -66,8 +75,19 @@ fn warn(ui: &mut Ui, problem: &str) {
 }
 
 /// Draws the settings of a bag.
-pub fn show(ui: &mut Ui, bag: &Bag, current: &ImportOptions, typed: &mut Typed, set: Set<'_>) {
+pub fn show(
+    ui: &mut Ui,
+    bag: &Bag,
+    imported: Option<&Imported>,
+    current: &ImportOptions,
+    typed: &mut Typed,
+    set: Set<'_>,
+) {
     let options = &current.bag;
+    let report = imported.and_then(report_of);
+    if let Some(report) = report {
+        typed.frames.clone_from(&report.listed_frames);
+    }
     let mut set = |change: &dyn Fn(&mut BagOptions)| set(&|options: &mut ImportOptions| change(&mut options.bag));
     fields::heading(ui, words::BAG);
     if let Some(name) = topic(ui, words::POSE_TOPIC, bag, true, options.pose_topic.as_deref()) {
@@ -79,14 +99,14 @@ pub fn show(ui: &mut Ui, bag: &Bag, current: &ImportOptions, typed: &mut Typed, 
     }
     let pose_kind = bag.topics.iter().find(|topic| Some(&topic.name) == options.pose_topic.as_ref());
     if pose_kind.is_some_and(|topic| topic.kind == Some(MessageKind::Transforms)) {
-        let base = options.base_frame.as_deref().unwrap_or_default();
-        if let Some(frame) = typed.base_frame.row(ui, words::BASE_FRAME, base) {
-            set(&|options| options.base_frame = Some(frame.clone()).filter(|frame| !frame.is_empty()));
+        if let Some(frame) = frame(ui, words::BASE_FRAME, &typed.frames, options.base_frame.as_deref()) {
+            set(&|options| options.base_frame = Some(frame.clone()));
         }
-        let flange = options.flange_frame.as_deref().unwrap_or_default();
-        if let Some(frame) = typed.flange_frame.row(ui, words::FLANGE_FRAME, flange) {
-            set(&|options| options.flange_frame = Some(frame.clone()).filter(|frame| !frame.is_empty()));
+        if let Some(frame) = frame(ui, words::FLANGE_FRAME, &typed.frames, options.flange_frame.as_deref()) {
+            set(&|options| options.flange_frame = Some(frame.clone()));
         }
+    } else if let Some(frame) = report.and_then(|report| report.pose_frame.as_deref()) {
+        fields::remark(ui, &words::pose_frame(frame));
     }
     if let Some(name) = topic(ui, words::PROFILE_TOPIC, bag, false, options.profile_topic.as_deref()) {
         set(&|options| {
@@ -114,6 +134,10 @@ pub fn show(ui: &mut Ui, bag: &Bag, current: &ImportOptions, typed: &mut Typed, 
         if let Some(number) = typed.still_within_deg.number_row(ui, words::STILL_WITHIN_DEG, options.still_within_deg) {
             set(&|options| options.still_within_deg = number);
         }
+        let mut joins_stays = options.joins_stays;
+        if ui.checkbox(&mut joins_stays, words::JOIN).on_hover_text(words::JOIN_HINT).changed() {
+            set(&|options| options.joins_stays = joins_stays);
+        }
     }
     if let Some(number) = typed.pair_within.number_row(ui, words::PAIR_WITHIN, options.pair_within_ms) {
         set(&|options| options.pair_within_ms = number);
@@ -122,6 +146,82 @@ pub fn show(ui: &mut Ui, bag: &Bag, current: &ImportOptions, typed: &mut Typed, 
     if let Some(clock) = fields::row_choice(ui, words::CLOCK, options.clock, &clocks, |c| words::clock(c).to_owned()) {
         set(&|options| options.clock = clock);
     }
+}
+
+/// What became of the bag's messages.
+pub fn report_of(imported: &Imported) -> Option<&BagReport> {
+    imported.notes.iter().find_map(|note| match note {
+        Note::Bag(report) => Some(&**report),
+        _ => None,
+    })
+}
+
+/// The topics, and what will come of the bag.
+pub fn overview(ui: &mut Ui, bag: &Bag, imported: Option<&Imported>) {
+    let report = imported.and_then(report_of);
+    let right = |ui: &mut Ui| {
+        ui.label(theme::dim(ui, words::TIMES_FROM).small());
+    };
+    widgets::card(ui, words::TOPICS, right, |ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        let widths = TOPIC_PARTS.map(|part| part * ui.available_width());
+        let mut head = RowCells::new(ui, theme::ROW_HEIGHT);
+        for (idx, (width, name)) in widths.iter().zip(words::TOPIC_COLUMNS).enumerate() {
+            let is_number = (2..5).contains(&idx);
+            head.head(*width, name, if is_number { Align2::RIGHT_CENTER } else { Align2::LEFT_CENTER });
+        }
+        let most = MOST_TOPICS * theme::ROW_HEIGHT;
+        ScrollArea::vertical().id_salt("bag topics").max_height(most).auto_shrink([false, true]).show(ui, |ui| {
+            for topic in &bag.topics {
+                topic_row(ui, topic, bag.start_ns(), &widths, report);
+            }
+        });
+        let (Some(imported), Some(report)) = (imported, report) else { return };
+        Frame::new().inner_margin(Margin::symmetric(12, 6)).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 2.0;
+            let palette = *theme::palette(ui);
+            let captures: usize = imported.stations.iter().map(|station| station.captures.len()).sum();
+            let is_any = captures > 0;
+            let (mark, color) = if is_any { ("✔", palette.good) } else { ("!", palette.warn) };
+            fields::marked(ui, mark, color, &words::will_become(report, imported.stations.len(), captures));
+            let note = import_words::note(&Note::Bag(Box::new(report.clone())));
+            fields::marked(ui, "·", palette.text_dim, &note);
+        });
+    });
+}
+
+fn topic_row(ui: &mut Ui, topic: &Topic, start_ns: Option<i64>, widths: &[f32; 6], report: Option<&BagReport>) {
+    let is_in_use = report
+        .is_some_and(|report| report.pose_topic == topic.name || report.profile_topic.as_ref() == Some(&topic.name));
+    let cells = RowCells::new(ui, theme::ROW_HEIGHT);
+    let mut cells = if topic.kind.is_none() { cells.faded() } else { cells };
+    if is_in_use {
+        let rect = cells.rect();
+        let selected = theme::palette(cells.ui()).selected;
+        cells.ui().painter().rect_filled(rect.shrink2(egui::vec2(1.0, 0.5)), 0.0, selected);
+    }
+    let color =
+        if topic.kind.is_none() { theme::palette(cells.ui()).text_dim } else { theme::palette(cells.ui()).text };
+    cells.text(widths[0], &topic.name);
+    cells.text(widths[1], words::short_type(&topic.type_name));
+    cells.word(widths[2], &topic.num_messages.to_string(), color);
+    for (end, width) in widths[3..5].iter().enumerate() {
+        let time = topic.recorded_ns.zip(start_ns).map(|(times, start_ns)| words::seconds(times[end], start_ns));
+        cells.word(*width, time.as_deref().unwrap_or("–"), color);
+    }
+    cells.text(widths[5], &words::gives_in_table(topic.kind, is_in_use));
+}
+
+/// The list of frames, each with its parent; answers another one that was picked.
+fn frame(ui: &mut Ui, label: &str, frames: &[ListedFrame], current: Option<&str>) -> Option<String> {
+    let choices: Vec<Option<usize>> = (0..frames.len()).map(Some).collect();
+    let place = current.and_then(|name| frames.iter().position(|frame| frame.name == name));
+    let named = |idx: Option<usize>| match idx.and_then(|idx| frames.get(idx)) {
+        Some(frame) => words::frame_choice(frame),
+        None => current.unwrap_or(words::NO_TOPIC).to_owned(),
+    };
+    let picked = fields::row_choice(ui, label, place, &choices, named)??;
+    frames.get(picked).map(|frame| frame.name.clone())
 }
 
 /// The list of topics with poses, or with profiles; answers another one that was picked.

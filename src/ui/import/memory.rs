@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
 use crate::geometry::{Flange, PoseConvention, PoseNotation, Tcp, Transform, Vec3};
+use crate::session::import::bag::{Clock, Taking};
 use crate::session::import::{BagOptions, ImportError, ImportOptions, Imported, Kind, Role, Separator, Source};
 
 /// Forms of tables that are remembered.
@@ -99,6 +100,25 @@ struct Settings {
     base_from_user_frame: Option<[f64; 6]>,
     profiles_in_metres: Option<bool>,
     is_z_mirrored: bool,
+    bag: Option<BagSettings>,
+}
+
+/// [`BagOptions`] in plain texts and numbers.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+struct BagSettings {
+    pose_topic: Option<String>,
+    profile_topic: Option<String>,
+    base_frame: Option<String>,
+    flange_frame: Option<String>,
+    axes: Option<String>,
+    is_recording_time: bool,
+    taking: Option<String>,
+    pair_within_ms: Option<f64>,
+    still_for_s: Option<f64>,
+    still_within_mm: Option<f64>,
+    still_within_deg: Option<f64>,
+    has_separate_stays: bool,
 }
 
 /// A [`PoseNotation`] in plain texts and numbers.
@@ -176,6 +196,9 @@ const ROLES: [(Role, &str); 25] = [
     (Role::Notation, "notation"),
 ];
 
+const TAKINGS: [(Taking, &str); 3] =
+    [(Taking::SettledMedian, "stays"), (Taking::SettledFirst, "first-of-stays"), (Taking::EveryProfile, "every")];
+
 fn name_of<T: Copy + PartialEq>(names: &[(T, &'static str)], value: T) -> &'static str {
     names.iter().find(|(known, _)| *known == value).map_or("", |(_, name)| name)
 }
@@ -197,6 +220,7 @@ impl Settings {
             base_from_user_frame: options.base_from_user_frame,
             profiles_in_metres: options.profile_length_unit.map(|unit| unit == LengthUnit::Metres),
             is_z_mirrored: options.is_z_mirrored,
+            bag: (options.bag != BagOptions::default()).then(|| BagSettings::of(&options.bag)),
         }
     }
 
@@ -215,8 +239,45 @@ impl Settings {
                 .profiles_in_metres
                 .map(|in_metres| if in_metres { LengthUnit::Metres } else { LengthUnit::Millimetres }),
             is_z_mirrored: self.is_z_mirrored,
-            // Topics and frames are those of one robot, and each bag shows its own.
-            bag: BagOptions::default(),
+            bag: self.bag.as_ref().map(BagSettings::options).unwrap_or_default(),
+        }
+    }
+}
+
+impl BagSettings {
+    fn of(bag: &BagOptions) -> Self {
+        Self {
+            pose_topic: bag.pose_topic.clone(),
+            profile_topic: bag.profile_topic.clone(),
+            base_frame: bag.base_frame.clone(),
+            flange_frame: bag.flange_frame.clone(),
+            axes: bag.axes.map(|axes| axes.to_string()),
+            is_recording_time: bag.clock == Clock::Recording,
+            taking: bag.taking.map(|taking| name_of(&TAKINGS, taking).to_owned()),
+            pair_within_ms: Some(bag.pair_within_ms),
+            still_for_s: Some(bag.still_for_s),
+            still_within_mm: Some(bag.still_within_mm),
+            still_within_deg: Some(bag.still_within_deg),
+            has_separate_stays: !bag.joins_stays,
+        }
+    }
+
+    fn options(&self) -> BagOptions {
+        let usual = BagOptions::default();
+        let number = |value: Option<f64>, usual: f64| value.filter(|v| v.is_finite() && *v >= 0.0).unwrap_or(usual);
+        BagOptions {
+            pose_topic: self.pose_topic.clone(),
+            profile_topic: self.profile_topic.clone(),
+            base_frame: self.base_frame.clone(),
+            flange_frame: self.flange_frame.clone(),
+            axes: self.axes.as_deref().and_then(|axes| axes.parse().ok()),
+            clock: if self.is_recording_time { Clock::Recording } else { Clock::Header },
+            taking: self.taking.as_deref().and_then(|name| named(&TAKINGS, name)),
+            pair_within_ms: number(self.pair_within_ms, usual.pair_within_ms),
+            still_for_s: number(self.still_for_s, usual.still_for_s),
+            still_within_mm: number(self.still_within_mm, usual.still_within_mm),
+            still_within_deg: number(self.still_within_deg, usual.still_within_deg),
+            joins_stays: !self.has_separate_stays,
         }
     }
 }
@@ -293,7 +354,20 @@ mod tests {
             base_from_user_frame: Some([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
             profile_length_unit: Some(LengthUnit::Metres),
             is_z_mirrored: true,
-            bag: BagOptions::default(),
+            bag: BagOptions {
+                pose_topic: Some("/pose".to_owned()),
+                profile_topic: Some("/scan".to_owned()),
+                base_frame: Some("base".to_owned()),
+                flange_frame: Some("flange".to_owned()),
+                axes: "y,-x".parse().ok(),
+                clock: Clock::Recording,
+                pair_within_ms: 12.5,
+                taking: Some(Taking::SettledFirst),
+                still_for_s: 0.25,
+                still_within_mm: 0.1,
+                still_within_deg: 0.05,
+                joins_stays: false,
+            },
         }
     }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use egui::{Align, Context, Frame, Id, Key, Layout, Modal, Modifiers, ProgressBar, ScrollArea, Stroke, Ui, vec2};
 
 use crate::app::{Command, ImportDraft, ImportInto, Progress, Workbench};
-use crate::session::import::{ImportError, ImportOptions, Imported, check_edges};
+use crate::session::import::{ImportError, ImportOptions, Imported, Source, check_edges};
 use crate::session::table::number::parse_number;
 use crate::session::{Edit, Reading, Session, SetupField, Station, Target};
 use crate::text::import as words;
@@ -14,7 +14,7 @@ use crate::ui::{theme, widgets};
 
 use super::memory::{Form, ImportMemory};
 use super::settings::Typed;
-use super::{fields, model, preview, settings};
+use super::{bag, fields, model, preview, settings};
 
 /// Distance from the window's border, points; less where there is little room.
 const MARGIN: f32 = 24.0;
@@ -65,7 +65,8 @@ impl ImportState {
         }
         let Some(outcome) = draft.outcome.as_ref().filter(|_| self.form.is_none()) else { return };
         let form = Form::of(outcome, &draft.sources);
-        if let Some(options) = memory.recall(&form).filter(|options| *options != draft.options) {
+        let recalled = memory.recall(&form).map(|options| fitting(options, outcome, draft));
+        if let Some(options) = recalled.filter(|options| *options != draft.options) {
             self.is_as_last_time = true;
             commands.push(Command::SetImportOptions(Box::new(options)));
         }
@@ -105,6 +106,24 @@ impl ImportState {
         setup.apply(&Session::new(Target::Point)).map_err(|_| words::RADIUS_UNUSABLE)?;
         Ok(target)
     }
+}
+
+/// Of what was set for another bag only the topics and frames that this one has.
+fn fitting(
+    mut options: ImportOptions,
+    outcome: &Result<Arc<Imported>, ImportError>,
+    draft: &ImportDraft,
+) -> ImportOptions {
+    let Some(bag) = draft.sources.iter().find_map(Source::bag) else { return options };
+    let has_topic = |name: &String| bag.topics.iter().any(|topic| topic.name == *name && topic.kind.is_some());
+    options.bag.pose_topic = options.bag.pose_topic.filter(has_topic);
+    options.bag.profile_topic = options.bag.profile_topic.filter(has_topic);
+    let report = outcome.as_deref().ok().and_then(bag::report_of);
+    let has_frame =
+        |name: &String| report.is_some_and(|report| report.listed_frames.iter().any(|frame| frame.name == *name));
+    options.bag.base_frame = options.bag.base_frame.filter(has_frame);
+    options.bag.flange_frame = options.bag.flange_frame.filter(has_frame);
+    options
 }
 
 /// Points that are reduced already need no radius, but a session of a ball has one.
@@ -183,6 +202,10 @@ fn contents(
         })
         .inner;
     right_ui.spacing_mut().item_spacing.y = 4.0;
+    if let Some(bag) = draft.sources.iter().find_map(Source::bag) {
+        bag::overview(&mut right_ui, bag, draft.outcome.as_ref().and_then(|outcome| outcome.as_deref().ok()));
+        right_ui.add_space(theme::GAP - 4.0);
+    }
     let by_table = match &draft.outcome {
         Some(Ok(imported)) => preview::show(&mut right_ui, draft, imported),
         Some(Err(error)) => {

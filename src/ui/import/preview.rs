@@ -7,7 +7,7 @@ use egui::{Align, CornerRadius, Label, Layout, RichText, ScrollArea, Ui, UiBuild
 use egui_extras::{Column, TableRow};
 
 use crate::app::ImportDraft;
-use crate::session::import::{ImportError, ImportOptions, Imported, Role};
+use crate::session::import::{ImportError, ImportOptions, Imported, Note, Role};
 use crate::text::import as words;
 use crate::ui::theme;
 use crate::ui::widgets::tables::table;
@@ -36,7 +36,7 @@ const LINE_HEIGHT: f32 = 16.0;
 
 /// Draws what was read; answers the options with another meaning of a column.
 pub fn show(ui: &mut Ui, draft: &ImportDraft, imported: &Imported) -> Option<ImportOptions> {
-    let num_remarks = imported.notes.len() + imported.problems.len();
+    let num_remarks = notes(imported).count() + imported.problems.len();
     let height = ui.available_height();
     let remarks_height = match num_remarks {
         0 => 0.0,
@@ -59,6 +59,11 @@ pub fn show(ui: &mut Ui, draft: &ImportDraft, imported: &Imported) -> Option<Imp
         remarks(ui, imported, ui.available_height());
     }
     changed
+}
+
+/// What to know beside the table; what became of a bag stands with its topics.
+fn notes(imported: &Imported) -> impl Iterator<Item = &Note> {
+    imported.notes.iter().filter(|note| !matches!(note, Note::Bag(_)))
 }
 
 #[expect(clippy::cast_precision_loss, reason = "at most some hundred lines")]
@@ -216,7 +221,7 @@ fn remarks(ui: &mut Ui, imported: &Imported, height: f32) {
             ScrollArea::vertical().id_salt("import remarks").auto_shrink(false).show(ui, |ui| {
                 egui::Frame::new().inner_margin(egui::Margin::symmetric(12, 4)).show(ui, |ui| {
                     let palette = theme::palette(ui);
-                    for note in &imported.notes {
+                    for note in notes(imported) {
                         fields::marked(ui, "!", palette.warn, &words::note(note));
                     }
                     for problem in &imported.problems {

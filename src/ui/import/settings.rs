@@ -43,7 +43,7 @@ pub fn show(ui: &mut Ui, draft: &ImportDraft, typed: &mut Typed) -> Option<Impor
     };
     let shown = draft.sources.iter().find_map(Source::bag);
     match shown {
-        Some(bag) => bag::show(ui, bag, current, &mut typed.bag, &mut set),
+        Some(bag) => bag::show(ui, bag, imported, current, &mut typed.bag, &mut set),
         None => text(ui, imported, current, &mut set),
     }
     let is_unknown = matches!(draft.outcome, Some(Err(ImportError::NotRecognised { .. })));

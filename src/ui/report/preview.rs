@@ -171,13 +171,13 @@ fn choices(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut PreviewState
     let height = ui.available_height();
     let (workbench, actions) = (context.workbench, &mut *context.actions);
     let button = |ui: &mut Ui| save_button(ui, workbench, actions);
-    let mut is_copied = false;
+    let mut command = None;
     widgets::card_with_height(ui, words::SECTIONS, height, button, |ui| {
         let area = state.list.apply(ScrollArea::vertical().id_salt("report choices").auto_shrink(false));
         area.show(ui, |ui| {
             Frame::new().inner_margin(egui::Margin::symmetric(12, 8)).show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 2.0;
-                is_copied = written(ui, workbench);
+                command = written(ui, workbench);
                 for section in SectionId::ALL {
                     let mut is_wanted = state.sections.contains(&section);
                     if ui.checkbox(&mut is_wanted, section.title()).changed() {
@@ -196,9 +196,7 @@ fn choices(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut PreviewState
             });
         });
     });
-    if is_copied {
-        context.commands.push(Command::Tell(NoticeKind::Done, words::COPIED_TEXT.to_owned()));
-    }
+    context.commands.extend(command);
 }
 
 /// The next action of the step; not while what is shown is no longer so.
@@ -215,18 +213,23 @@ fn save_button(ui: &mut Ui, workbench: &Workbench, actions: &mut Vec<Action>) {
     });
 }
 
-/// Where the report was written last. Answers whether its path was copied.
-fn written(ui: &mut Ui, workbench: &Workbench) -> bool {
-    let Some(page) = workbench.written_report() else { return false };
+/// Where the report was written last, and what can be done with it.
+fn written(ui: &mut Ui, workbench: &Workbench) -> Option<Command> {
+    let page = workbench.written_report()?;
     let path = page.display().to_string();
     ui.add(Label::new(theme::dim(ui, words::WRITTEN_TO).size(theme::SMALL_SIZE)));
     ui.add(Label::new(RichText::new(&path).size(theme::SMALL_SIZE)).wrap());
-    let is_copied = ui.button(words::COPY_PATH).clicked();
-    if is_copied {
-        ui.ctx().copy_text(path);
-    }
+    let command = ui.horizontal(|ui| {
+        if ui.button(words::OPEN_IN_BROWSER).clicked() {
+            return Some(Command::OpenReport);
+        }
+        ui.button(words::COPY_PATH).clicked().then(|| {
+            ui.ctx().copy_text(path);
+            Command::Tell(NoticeKind::Done, words::COPIED_TEXT.to_owned())
+        })
+    });
     ui.add_space(8.0);
-    is_copied
+    command.inner
 }
 
 fn field(ui: &mut Ui, name: &str, hint: &str, text: &mut String) {

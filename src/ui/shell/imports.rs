@@ -59,6 +59,13 @@ impl Shell {
                     Command::WriteReport { folder, options }
                 });
             }
+            Purpose::Compared(side) => paths.iter().for_each(|path| self.verify.take_compared(side, path)),
+            Purpose::ResultFolder => {
+                for folder in paths {
+                    self.verify.take_result_folder(&folder);
+                    self.workbench.apply(Command::ReadResultHistory(folder));
+                }
+            }
             Purpose::WatchedFolder => {
                 if let Some(folder) = paths.into_iter().next() {
                     self.persisted.cell.watch(folder);

@@ -209,6 +209,11 @@ impl Shell {
             || self.report.is_drawing()
     }
 
+    /// The Verify step's state: for whoever drives the window from outside.
+    pub const fn verify_mut(&mut self) -> &mut VerifyState {
+        &mut self.verify
+    }
+
     /// Takes in finished jobs; also while the window is hidden.
     pub fn logic(&mut self, ctx: &Context) {
         // What has come is drawn in the frame that follows; whoever brought it has asked for that.
@@ -329,7 +334,8 @@ impl Shell {
     fn center(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, commands: &mut Vec<Command>) {
         let canvas = Frame::new().fill(theme::palette(ui).canvas).inner_margin(12);
         CentralPanel::default().frame(canvas).show(ui, |ui| {
-            if self.workbench.document().is_none() && !matches!(self.step, Step::Session | Step::Capture) {
+            if self.workbench.document().is_none() && !matches!(self.step, Step::Session | Step::Capture | Step::Verify)
+            {
                 empty_state(ui, actions);
                 return;
             }
@@ -395,6 +401,8 @@ impl Shell {
             Action::SaveReport => self.ask_for_paths(Purpose::ReportFolder),
             Action::OpenPoints => self.ask_for_paths(Purpose::OpenPoints),
             Action::ChooseCalibration => self.ask_for_paths(Purpose::Calibration),
+            Action::ChooseCompared(side) => self.ask_for_paths(Purpose::Compared(side)),
+            Action::ChooseResultFolder => self.ask_for_paths(Purpose::ResultFolder),
             Action::ChooseWatchedFolder => self.ask_for_paths(Purpose::WatchedFolder),
             Action::Practise(target) => commands.push(Command::Cell(Box::new(CellCommand::Practise(target)))),
             Action::EndPractice => commands.push(Command::Cell(Box::new(CellCommand::EndPractice))),

@@ -1,14 +1,17 @@
 //! The panel: its sections, and what each of them shows.
 
+use std::path::Path;
+
 use egui::{ScrollArea, Ui};
 
 use crate::app::{Workbench, study::Study};
+use crate::text::compare_results as result_words;
 use crate::text::verify as words;
 use crate::ui::{PanelContext, theme, widgets};
 use crate::verify::Verification;
 
 use super::marks::Mark;
-use super::{cross_target, distances, stability, workpiece};
+use super::{compare_results, cross_target, distances, result_history, stability, workpiece};
 
 /// A kind of evidence.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -22,11 +25,22 @@ pub enum Section {
     CrossTarget,
     /// A scanned part (Figs. 6 to 8).
     Workpiece,
+    /// Two calibrations from files, or the session against one.
+    CompareResults,
+    /// The calibrations of a folder over time.
+    ResultHistory,
 }
 
 impl Section {
     /// All sections in the order in which they are shown.
-    pub const ALL: [Self; 4] = [Self::Distances, Self::Stability, Self::CrossTarget, Self::Workpiece];
+    pub const ALL: [Self; 6] = [
+        Self::Distances,
+        Self::Stability,
+        Self::CrossTarget,
+        Self::Workpiece,
+        Self::CompareResults,
+        Self::ResultHistory,
+    ];
 
     /// Its name.
     #[must_use]
@@ -36,6 +50,8 @@ impl Section {
             Self::Stability => words::STABILITY,
             Self::CrossTarget => words::CROSS_TARGET,
             Self::Workpiece => words::WORKPIECE,
+            Self::CompareResults => result_words::COMPARE,
+            Self::ResultHistory => result_words::HISTORY,
         }
     }
 
@@ -45,7 +61,14 @@ impl Section {
             Self::Stability => words::STABILITY_HINT,
             Self::CrossTarget => words::CROSS_TARGET_HINT,
             Self::Workpiece => words::WORKPIECE_HINT,
+            Self::CompareResults => result_words::COMPARE_HINT,
+            Self::ResultHistory => result_words::HISTORY_HINT,
         }
+    }
+
+    /// Whether it needs no session: it reads files.
+    const fn is_of_files(self) -> bool {
+        matches!(self, Self::CompareResults | Self::ResultHistory)
     }
 }
 
@@ -58,6 +81,25 @@ pub struct VerifyState {
     pub(super) stability: stability::StabilityState,
     pub(super) cross_target: cross_target::CrossTargetState,
     pub(super) workpiece: workpiece::WorkpieceState,
+    compare_results: compare_results::CompareResultsState,
+    result_history: result_history::ResultHistoryState,
+}
+
+impl VerifyState {
+    /// Goes to a section.
+    pub const fn go_to(&mut self, section: Section) {
+        self.section = Some(section);
+    }
+
+    /// Takes the file that was chosen for a side of the comparison: 0 the earlier, 1 the later.
+    pub fn take_compared(&mut self, side: usize, path: &Path) {
+        self.compare_results.take_path(side, path);
+    }
+
+    /// Takes the folder of results that was chosen.
+    pub fn take_result_folder(&mut self, folder: &Path) {
+        self.result_history.take_folder(folder);
+    }
 }
 
 /// The verification to be shown, with the marks of its calibrations.
@@ -69,10 +111,6 @@ pub(super) struct View<'a> {
 /// Shows the panel.
 pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut VerifyState) {
     let workbench = context.workbench;
-    if workbench.document().is_none() {
-        widgets::nothing(ui, words::NO_SESSION);
-        return;
-    }
     let section = state.section.unwrap_or_else(|| first_of_use(workbench));
     let names = Section::ALL.map(|section| (section.name(), section.hint()));
     let current_idx = Section::ALL.iter().position(|known| *known == section).unwrap_or(0);
@@ -81,11 +119,17 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut VerifyState
         state.section = Some(Section::ALL[chosen_idx]);
     }
     ui.add_space(theme::GAP);
+    if workbench.document().is_none() && !section.is_of_files() {
+        widgets::nothing(ui, words::NO_SESSION);
+        return;
+    }
     ScrollArea::vertical().id_salt(section.name()).auto_shrink([false, false]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = theme::GAP;
-        if section == Section::Workpiece {
-            workpiece::show(ui, context, &mut state.workpiece);
-            return;
+        match section {
+            Section::Workpiece => return workpiece::show(ui, context, &mut state.workpiece),
+            Section::CompareResults => return compare_results::show(ui, context, &mut state.compare_results),
+            Section::ResultHistory => return result_history::show(ui, context, &mut state.result_history),
+            Section::Distances | Section::Stability | Section::CrossTarget => {}
         }
         let Some(found) = workbench.verification().last() else {
             let is_under_way = workbench.verification().is_running() || workbench.solve_progress().is_some();
@@ -100,7 +144,7 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut VerifyState
             Section::Distances => distances::show(ui, &view, context, &mut state.distances),
             Section::Stability => stability::show(ui, &view, context, &mut state.stability),
             Section::CrossTarget => cross_target::show(ui, &view, context, &mut state.cross_target),
-            Section::Workpiece => {}
+            Section::Workpiece | Section::CompareResults | Section::ResultHistory => {}
         }
     });
 }
@@ -111,6 +155,7 @@ fn first_of_use(workbench: &Workbench) -> Section {
     match workbench.document().map(|document| &document.session.target) {
         Some(Target::Workpiece) => Section::Workpiece,
         Some(Target::Ball { .. } | Target::Point) => Section::Stability,
+        None => Section::CompareResults,
         _ => Section::Distances,
     }
 }

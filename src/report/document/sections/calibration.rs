@@ -9,8 +9,16 @@ use crate::text::conventions::not_known_apart;
 use crate::text::digits::decimals_for;
 use crate::text::report as words;
 
-/// Decimals of direction cosines and quaternions: a micrometre at a metre.
+/// Decimals of direction cosines and quaternions where their uncertainty is not known: a micrometre at a metre.
 const ROTATION_DECIMALS: usize = 6;
+
+/// Decimals of direction cosines and quaternions: two digits of σ of the orientation about an axis, and one more, as these
+/// figures have to make a rotation together.
+fn rotation_decimals(solution: &Solution) -> usize {
+    let known = solution.uncertainty.as_ref();
+    let std_rad = known.map(|known| (known.rotation_covariance().trace().max(0.0) / 3.0).sqrt());
+    std_rad.map_or(ROTATION_DECIMALS, |std_rad| (decimals_for(Some(std_rad)) + 1).clamp(3, ROTATION_DECIMALS))
+}
 
 pub(in crate::report::document) fn blocks(evidence: &Evidence) -> Vec<Block> {
     let Some((target, solution)) = evidence.answer() else { return Vec::new() };
@@ -22,6 +30,7 @@ pub(in crate::report::document) fn blocks(evidence: &Evidence) -> Vec<Block> {
         Block::Table(quaternion(solution)),
         Block::Table(six_numbers(&target.session, solution)),
         Block::Paragraph(words::convention_in_words(convention)),
+        Block::Paragraph(words::DIGITS.to_owned()),
     ];
     let rotation = solution.flange_from_sensor.rotation();
     let known = solution.uncertainty.as_ref();
@@ -33,6 +42,7 @@ pub(in crate::report::document) fn blocks(evidence: &Evidence) -> Vec<Block> {
 fn matrix(solution: &Solution) -> Table {
     let matrix = solution.flange_from_sensor.matrix();
     let std_mm = solution.uncertainty.as_ref().map(|known| known.translation_std_mm);
+    let rotation_decimals = rotation_decimals(solution);
     let names = ["x", "y", "z"];
     let rotation = names.map(|name| Column::number(name, None, format!("r_{name}")).under(words::ROTATION_PART));
     let translation = Column::number("t", Some("mm"), "t_mm").under(words::TRANSLATION_PART);
@@ -41,7 +51,7 @@ fn matrix(solution: &Solution) -> Table {
             // The last row is exact.
             (3, _) => Cell::number(matrix[(row, column)], 0),
             (_, 3) => Cell::number(matrix[(row, column)], decimals_for(std_mm.map(|std| std[row]))),
-            _ => Cell::number(matrix[(row, column)], ROTATION_DECIMALS),
+            _ => Cell::number(matrix[(row, column)], rotation_decimals),
         };
         (0..4).map(cell).collect()
     };
@@ -56,11 +66,12 @@ fn matrix(solution: &Solution) -> Table {
 
 fn quaternion(solution: &Solution) -> Table {
     let quaternion = solution.flange_from_sensor.quaternion_wxyz();
+    let decimals = rotation_decimals(solution);
     Table {
         id: "quaternion".to_owned(),
         title: words::QUATERNION_TITLE.to_owned(),
         columns: ["w", "x", "y", "z"].map(|name| Column::number(name, None, format!("q_{name}"))).to_vec(),
-        rows: vec![quaternion.map(|part| Cell::number(part, ROTATION_DECIMALS)).to_vec()],
+        rows: vec![quaternion.map(|part| Cell::number(part, decimals)).to_vec()],
         note: None,
     }
 }

@@ -5,6 +5,8 @@ use crate::report::evidence::Evidence;
 use crate::text::report as words;
 
 pub(in crate::report::document) fn inputs(inputs: &[InputFile]) -> Vec<Block> {
+    let remark = |input: &InputFile| input.remark.map(|remark| format!("{}: {remark}", input.name));
+    let remarks: Vec<String> = inputs.iter().filter_map(remark).collect();
     let files = if inputs.is_empty() {
         Block::Paragraph(words::NO_FILE.to_owned())
     } else {
@@ -20,7 +22,7 @@ pub(in crate::report::document) fn inputs(inputs: &[InputFile]) -> Vec<Block> {
                 .iter()
                 .map(|input| vec![Cell::words(&input.name), Cell::count(input.num_bytes), Cell::words(&input.sha256)])
                 .collect(),
-            note: None,
+            note: (!remarks.is_empty()).then(|| remarks.join(" · ")),
         })
     };
     let program = vec![Fact::new(words::PROGRAM, words::program(env!("CARGO_PKG_VERSION")))];

@@ -2,7 +2,7 @@
 
 use crate::diagnose::Severity;
 use crate::report::diagnosis_lines::{Listed, listed, next_step};
-use crate::report::document::{Block, Fact, Finding};
+use crate::report::document::{Block, Fact, Finding, typeset_numbers};
 use crate::report::evidence::{Evidence, TargetEvidence};
 use crate::text::diagnosis as text;
 use crate::text::report as words;
@@ -32,12 +32,13 @@ fn of_target(target: &TargetEvidence) -> Vec<Block> {
             Finding {
                 severity: finding.severity,
                 code: finding.fault.code().to_owned(),
-                message: format!("{message} {falls}").trim_end().to_owned(),
-                remedy: text::fault_remedy(&finding.fault, &target.session),
+                message: typeset_numbers(format!("{message} {falls}").trim_end()),
+                remedy: typeset_numbers(&text::fault_remedy(&finding.fault, &target.session)),
             }
         }
     };
     let findings = listed(diagnosis).iter().map(entry).collect();
-    let step = next_step(&target.session, diagnosis).map(|step| Block::Facts(vec![Fact::new(words::NEXT_STEP, step)]));
+    let step = next_step(&target.session, diagnosis)
+        .map(|step| Block::Facts(vec![Fact::new(words::NEXT_STEP, typeset_numbers(&step))]));
     std::iter::once(Block::Findings(findings)).chain(step).collect()
 }

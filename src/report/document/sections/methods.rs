@@ -5,6 +5,7 @@ use crate::report::compare::{distance_from_truth, maximum_error_mm};
 use crate::report::comparison::{Comparison, DifferenceRow};
 use crate::report::document::{Block, Cell, Column, Table};
 use crate::report::evidence::{Evidence, TargetEvidence};
+use crate::session::Target;
 use crate::text::compare::pair;
 use crate::text::digits::decimals_for;
 use crate::text::report as words;
@@ -38,11 +39,14 @@ fn of_target(target: &TargetEvidence, suffix: &str) -> Vec<Block> {
 
 fn overview(target: &TargetEvidence, suffix: &str) -> Table {
     let truth = target.session.truth.as_ref();
+    // Off an edge there are only two directions.
+    let rms = if target.session.target == Target::RightAnglePlate { words::RMS } else { words::RMS_3D };
     let mut columns = vec![
         Column::words(words::METHOD_COLUMN, "method"),
-        Column::number(words::MAXIMUM, Some("mm"), "maximum_error_mm"),
-        Column::number(words::RMS, Some("mm"), "scatter_rms_mm"),
-        Column::number(words::LEFT_OUT_RMS, Some("mm"), "leave_one_out_rms_mm"),
+        Column::number(words::maximum_in_sample(&target.session.target), None, "maximum_error_mm")
+            .under(words::IN_SAMPLE_GROUP),
+        Column::number(rms, None, "scatter_rms_mm").under(words::IN_SAMPLE_GROUP),
+        Column::number(rms, None, "leave_one_out_rms_mm").under(words::LEFT_OUT_GROUP),
         Column::number(words::STD_POINT, Some("mm"), "workspace_point_std_mm"),
     ];
     if truth.is_some() {

@@ -1,6 +1,6 @@
 //! A scanned part: its planes, the angles between them, its teeth and diameter.
 
-use crate::report::document::{Block, Cell, Column, Fact, Table, typeset};
+use crate::report::document::{Block, Cell, Column, Fact, Table, typeset, typeset_numbers};
 use crate::report::evidence::{MeasuredPart, PartEvidence};
 use crate::scan::{Deviation, Measured, PlaneFit, Region, Teeth, angle_between};
 use crate::session::Known;
@@ -27,7 +27,7 @@ pub(super) fn blocks(part: &PartEvidence, part_idx: usize) -> Vec<Block> {
         None => {}
     }
     let round = measured.shapes.round.as_ref().map(|round| match round {
-        Ok(round) => typeset(&text::round_line(round, part.known.diameter_mm)),
+        Ok(round) => typeset_numbers(&text::round_line(round, part.known.diameter_mm)),
         Err(error) => error.to_string(),
     });
     blocks.extend(round.map(|line| Block::Facts(vec![Fact::new(words::DIAMETER, line)])));
@@ -43,12 +43,13 @@ fn planes(measured: &MeasuredPart, known: &Known, suffix: &str) -> Vec<Block> {
         let Ok(fit) = &region.plane else {
             return std::iter::once(Cell::words(&region.name)).chain((1..9).map(|_| Cell::missing())).collect();
         };
+        let crate::scan::Plane { normal, offset_mm } = fit.plane;
         let sizes: Vec<f64> = region.distances_mm.iter().map(|distance| distance.abs()).collect();
         let figures = Figures::of(&sizes);
         let height = Cell { text: text::height_std(fit), ..Cell::number(fit.height_std_mm(), 4) };
         vec![
             Cell::words(&region.name),
-            Cell::words(typeset(&text::equation(&fit.equation()))),
+            Cell::figures(typeset(&text::equation(&fit.equation())), normal.x, vec![normal.y, normal.z, offset_mm]),
             height,
             Cell::number(fit.normal_std_rad().to_degrees(), 4),
             Cell { text: text::grouped(fit.num_points), ..Cell::count(fit.num_points) },
@@ -73,7 +74,7 @@ fn planes(measured: &MeasuredPart, known: &Known, suffix: &str) -> Vec<Block> {
         title: words::PLANES.to_owned(),
         columns: [
             Column::words(words::PLANE, "plane"),
-            Column::words(words::EQUATION, "equation"),
+            Column::figures(words::EQUATION, "normal_x", &["normal_y", "normal_z", "offset_mm"]),
             Column::number(words::HEIGHT, Some("mm"), "height_std_mm").under(words::KNOWN_TO),
             Column::number(words::NORMAL, Some("°"), "normal_std_deg").under(words::KNOWN_TO),
             Column::number("points", None, "points"),
@@ -96,11 +97,12 @@ fn angles(regions: &[Region], known: &Known, suffix: &str) -> Option<Block> {
         fits.iter().enumerate().flat_map(|(idx, first)| fits[idx + 1..].iter().map(move |second| (first, second)));
     let rows: Vec<Vec<Cell>> = pairs
         .map(|((first_name, first), (second_name, second))| {
-            let angle = Cell {
-                text: typeset(&text::angle(first, second, known.angle_deg)),
-                value: Some(angle_between(first, second).angle_rad.to_degrees()),
-                is_strong: false,
-            };
+            let found = angle_between(first, second);
+            let angle = Cell::figures(
+                typeset(&text::angle(first, second, known.angle_deg)),
+                found.angle_rad.to_degrees(),
+                vec![found.std_rad.to_degrees()],
+            );
             vec![Cell::words(format!("{first_name}, {second_name}")), angle]
         })
         .collect();
@@ -110,7 +112,7 @@ fn angles(regions: &[Region], known: &Known, suffix: &str) -> Option<Block> {
             title: words::ANGLES.to_owned(),
             columns: vec![
                 Column::words(words::PLANES_OF_ANGLE, "planes"),
-                Column::words(words::ANGLE_WITH_STD, "angle_deg"),
+                Column::figures(words::ANGLE_WITH_STD, "angle_deg", &["angle_std_deg"]),
             ],
             rows,
             note: None,
@@ -147,7 +149,7 @@ fn of_teeth(teeth: &Teeth, known: &Known, suffix: &str) -> Vec<Block> {
     ];
     let facts = compared.into_iter().filter_map(|(name, values, nominal_mm)| {
         let deviation = Deviation::of(values.into_iter(), nominal_mm?)?;
-        Some(Fact::new(name, text::deviation_words(&deviation, nominal_mm?)))
+        Some(Fact::new(name, typeset_numbers(&text::deviation_words(&deviation, nominal_mm?))))
     });
     vec![Block::Table(table), Block::Facts(facts.collect())]
 }

@@ -1,6 +1,6 @@
 //! Robot, sensor, target, mount, noise and the stations used.
 
-use crate::report::document::{Block, Fact, Options};
+use crate::report::document::{Block, Fact, Options, SectionId};
 use crate::report::evidence::Evidence;
 use crate::session::{Session, Station, Target};
 use crate::text::conventions::notation_in_full;
@@ -11,11 +11,21 @@ use crate::text::verify::further_figures;
 pub(in crate::report::document) fn blocks(evidence: &Evidence, options: &Options) -> Vec<Block> {
     let session = &evidence.session;
     let Session { robot, sensor, .. } = session;
+    let noise = evidence.answer().and_then(|(_, solution)| solution.noise.as_ref());
+    let is_estimated = noise.is_some() && options.sections.contains(&SectionId::Validation);
+    let mut target = start::target(&session.target);
+    let is_centre = evidence.targets.first().is_some_and(|own| !own.uses_radius());
+    if matches!(session.target, Target::Ball { .. }) && is_centre {
+        target = format!("{target} ({})", words::RADIUS_NOT_USED);
+    }
     let or_not_stated =
         |text: &str| if text.trim().is_empty() { words::NOT_STATED.to_owned() } else { text.to_owned() };
     let mut facts = vec![
         Fact::new(words::ROBOT, or_not_stated(&robot.model)),
-        Fact::new(words::ROBOT_NOISE, words::robot_noise(robot.position_std_mm, robot.orientation_std_deg)),
+        Fact::new(
+            words::ROBOT_NOISE,
+            words::robot_noise(robot.position_std_mm, robot.orientation_std_deg, is_estimated),
+        ),
         Fact::new(words::POSES, notation_in_full(&robot.notation)),
         Fact::new(words::SENSOR, or_not_stated(&sensor.model)),
         Fact::new(words::SENSOR_NOISE, words::sensor_noise(sensor.profile_std_mm)),
@@ -26,7 +36,7 @@ pub(in crate::report::document) fn blocks(evidence: &Evidence, options: &Options
                 .map_or_else(|| words::NOT_STATED.to_owned(), |distance| format!("{distance} mm")),
         ),
         Fact::new(words::MOUNT, start::mount(session.mount)),
-        Fact::new(words::TARGET_FACT, start::target(&session.target)),
+        Fact::new(words::TARGET_FACT, target),
     ];
     let used = session.stations.iter().filter(|station| station.enabled);
     let num_used = used.clone().count();

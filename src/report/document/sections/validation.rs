@@ -3,7 +3,7 @@
 use crate::calibrate::Solution;
 use crate::report::compare::distance_from_truth;
 use crate::report::diagnosis_lines::accuracy_lines;
-use crate::report::document::{Block, Fact, typeset};
+use crate::report::document::{Block, Fact, typeset_numbers};
 use crate::report::evidence::{Evidence, TargetEvidence};
 use crate::text::digits::{self, fixed};
 use crate::text::report as words;
@@ -16,11 +16,12 @@ pub(in crate::report::document) fn blocks(evidence: &Evidence) -> Vec<Block> {
 
 fn of_target(target: &TargetEvidence) -> Vec<Block> {
     let (Some(solution), Ok(solved)) = (target.best(), &target.outcome) else { return Vec::new() };
+    let of = &target.session.target;
     let left_out = solution.leave_one_out.map_or_else(
         || words::NO_LEAVE_ONE_OUT.to_owned(),
-        |left_out| words::leave_one_out_line(&size(left_out.rms_mm), &size(left_out.max_mm)),
+        |left_out| words::distances_line(of, &size(left_out.rms_mm), &size(left_out.max_mm)),
     );
-    let in_sample = words::leave_one_out_line(&size(solution.scatter.rms_mm), &size(solution.scatter.max_mm));
+    let in_sample = words::distances_line(of, &size(solution.scatter.rms_mm), &size(solution.scatter.max_mm));
     let span = format!("{}°", fixed(solution.rotation_span_rad.to_degrees(), 1));
     let mut facts = vec![
         Fact::new(words::METHOD, words::method_and_id(solution.method)),
@@ -50,16 +51,4 @@ fn size(value: f64) -> String {
 fn capitalised(words: &str) -> String {
     let mut letters = words.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
-}
-
-/// Hyphens stay in words and become minus signs before digits.
-fn typeset_numbers(line: &str) -> String {
-    let words = line.split(' ').map(|word| {
-        let is_number = word
-            .trim_start_matches('(')
-            .strip_prefix('-')
-            .is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()));
-        if is_number { typeset(word) } else { word.to_owned() }
-    });
-    words.collect::<Vec<String>>().join(" ")
 }

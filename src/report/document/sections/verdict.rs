@@ -4,7 +4,7 @@ use crate::calibrate::verdict::{GOOD_UP_TO_MM, USABLE_UP_TO_MM};
 use crate::calibrate::{self, Solution};
 use crate::diagnose::Severity;
 use crate::report::compare::improvement;
-use crate::report::document::{Block, Cell, Column, Fact, Finding, Table, Verdict, typeset};
+use crate::report::document::{Block, Cell, Column, Fact, Finding, Table, Verdict, typeset, typeset_numbers};
 use crate::report::evidence::{Evidence, TargetEvidence};
 use crate::report::judgement::Judgement;
 use crate::text::compare::verdict_scale;
@@ -15,11 +15,15 @@ use crate::text::{start, verdict_mark, verdict_name};
 pub(in crate::report::document) fn blocks(evidence: &Evidence) -> Vec<Block> {
     let Some((target, solution)) = evidence.answer() else { return vec![Block::Verdict(nothing(evidence))] };
     let judgement = Judgement::on(&target.session, solution, target.diagnosis());
+    let reason = match judgement.lowered {
+        Some((by_figures, code)) => words::lowered(by_figures, judgement.verdict, code, &judgement.reason),
+        None => judgement.reason.clone(),
+    };
     let verdict = Verdict {
         rating: Some(judgement.verdict),
         name: verdict_name(judgement.verdict).to_owned(),
         mark: verdict_mark(judgement.verdict),
-        reason: judgement.reason.clone(),
+        reason: typeset_numbers(&reason),
         headline: judgement.workspace_point.map(|point| format!("± {} mm", std_text(point.std_mm))),
         headline_note: solution.uncertainty.as_ref().zip(judgement.workspace_point).map(|(known, point)| {
             let within_95_mm = std_text(known.workspace_point_95_mm);
@@ -36,7 +40,7 @@ pub(in crate::report::document) fn blocks(evidence: &Evidence) -> Vec<Block> {
         let warnings = judgement.warnings.iter().zip(codes).map(|((message, remedy), code)| Finding {
             severity: Severity::Doubtful,
             code,
-            message: message.clone(),
+            message: typeset_numbers(message),
             remedy: (*remedy).to_owned(),
         });
         blocks.push(Block::Findings(warnings.collect()));
@@ -86,9 +90,10 @@ fn facts(evidence: &Evidence, target: &TargetEvidence, solution: &Solution) -> V
             improvement.baseline,
             &fixed(improvement.baseline_error_mm, 3),
         );
-        facts.push(Fact::new(words::IMPROVEMENT, line));
+        facts.push(Fact::new(words::COMPARED, line));
     }
-    facts.push(Fact::new(words::SCALE, verdict_scale(GOOD_UP_TO_MM, USABLE_UP_TO_MM)));
+    let scale = format!("{} {}", verdict_scale(GOOD_UP_TO_MM, USABLE_UP_TO_MM), words::SCALE_NOTE);
+    facts.push(Fact::new(words::SCALE, scale));
     facts
 }
 

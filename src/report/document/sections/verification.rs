@@ -1,5 +1,6 @@
 //! What the calibration is worth on other data: distances to lines and plane, stability, other targets, scanned parts.
 
+use crate::calibrate::Problem;
 use crate::report::document::{Block, Cell, Column, Table};
 use crate::report::evidence::Evidence;
 use crate::text::digits::decimals_for;
@@ -67,9 +68,15 @@ impl<'a> OfTarget<'a> {
         self.target.rows.iter().enumerate().filter_map(|(idx, row)| Some((idx, row.as_ref().ok()?)))
     }
 
-    /// The calibration's name, with a star on its own data.
-    fn name(self, calibration_idx: usize) -> Cell {
-        Cell::words(starred_name(self.verification, calibration_idx, self.target_idx))
+    /// The calibration's name, and whether it was computed from these data.
+    fn name(self, calibration_idx: usize) -> [Cell; 2] {
+        let is_own = self.verification.has_seen(calibration_idx, self.target_idx);
+        [Cell::words(name_of(self.verification, calibration_idx)), Cell::words(words::data(is_own))]
+    }
+
+    /// The heads of these.
+    fn name_columns() -> [Column; 2] {
+        [Column::words(words::CALIBRATION_COLUMN, "calibration"), Column::words(words::DATA, "data")]
     }
 
     fn distances(self) -> Option<Table> {
@@ -86,7 +93,8 @@ impl<'a> OfTarget<'a> {
             let lengths = [&distances.to_line, &distances.to_plane].into_iter().flat_map(|figures| {
                 [figures.mean_mm, figures.std_mm, figures.max_mm].map(|value| Cell::number(value, DECIMALS))
             });
-            std::iter::once(self.name(*idx))
+            self.name(*idx)
+                .into_iter()
                 .chain(lengths)
                 .chain([Cell::number(distances.angle_rad.to_degrees(), 3), Cell::number(distances.gap_mm, DECIMALS)])
                 .collect()
@@ -94,7 +102,8 @@ impl<'a> OfTarget<'a> {
         Some(Table {
             id: self.id("distances"),
             title: self.title(words::DISTANCES),
-            columns: std::iter::once(Column::words(words::CALIBRATION_COLUMN, "calibration"))
+            columns: Self::name_columns()
+                .into_iter()
                 .chain(figures(words::TO_LINES, "to_lines"))
                 .chain(figures(words::TO_PLANE, "to_plane"))
                 .chain([
@@ -103,7 +112,7 @@ impl<'a> OfTarget<'a> {
                 ])
                 .collect(),
             rows: rows.iter().map(row).collect(),
-            note: Some(words::OWN_DATA.to_owned()),
+            note: Some(words::DATA_NOTE.to_owned()),
         })
     }
 
@@ -119,8 +128,10 @@ impl<'a> OfTarget<'a> {
     fn stability(self) -> Option<Table> {
         let seen = self.seen();
         let is_touched = seen.first()?.2.is_touched;
+        let is_of_tip = matches!(self.target.problem, Problem::Point(_));
         let row = |(idx, _, stability): &(usize, &[Measurement], &Stability)| {
-            std::iter::once(self.name(*idx))
+            self.name(*idx)
+                .into_iter()
                 .chain(
                     is_touched
                         .then(|| {
@@ -133,7 +144,7 @@ impl<'a> OfTarget<'a> {
                 .chain([Cell::number(stability.three_std_3d_mm(), DECIMALS)])
                 .collect()
         };
-        let mut columns = vec![Column::words(words::CALIBRATION_COLUMN, "calibration")];
+        let mut columns = Self::name_columns().to_vec();
         if is_touched {
             columns.extend(Column::vector_mm(words::MEAN_DEVIATION, ["Δx", "Δy", "Δz"], "mean_deviation"));
         }
@@ -144,7 +155,7 @@ impl<'a> OfTarget<'a> {
             title: self.title(words::stability_title(is_touched)),
             columns,
             rows: seen.iter().map(row).collect(),
-            note: Some(format!("{} · {}", words::STABILITY_NOTE, words::OWN_DATA)),
+            note: Some(format!("{} · {}", words::stability_note(is_of_tip), words::DATA_NOTE)),
         })
     }
 
@@ -160,7 +171,7 @@ impl<'a> OfTarget<'a> {
                 .chain(deviation.iter().map(|value| Cell::signed(*value, DECIMALS)))
                 .collect()
         };
-        let name = starred_name(self.verification, idx, self.target_idx);
+        let name = name_of(self.verification, idx);
         Some(Table {
             id: self.id("measurements"),
             title: words::of_target(&self.title(words::stability_title(stability.is_touched)), &name),
@@ -173,11 +184,9 @@ impl<'a> OfTarget<'a> {
     }
 }
 
-fn starred_name(verification: &Verification, calibration_idx: usize, target_idx: usize) -> String {
-    let name =
-        verification.calibrations.get(calibration_idx).map(|found| calibration_name(&found.origin, verification));
-    let star = if verification.has_seen(calibration_idx, target_idx) { " *" } else { "" };
-    format!("{}{star}", name.unwrap_or_default())
+fn name_of(verification: &Verification, calibration_idx: usize) -> String {
+    let calibration = verification.calibrations.get(calibration_idx);
+    calibration.map(|found| calibration_name(&found.origin, verification)).unwrap_or_default()
 }
 
 fn cross_table(verification: &Verification) -> Table {
@@ -192,12 +201,12 @@ fn cross_table(verification: &Verification) -> Table {
         let cells = (0..verification.targets.len()).flat_map(|target_idx| {
             let figures =
                 verification.cell(idx, target_idx).and_then(|cell| cell.as_ref().ok()).map(|found| &found.figures);
-            let rms = Cell::maybe(figures.map(|figures| figures.rms_mm), DECIMALS);
-            let star = figures.is_some() && verification.has_seen(idx, target_idx);
-            let max = Cell::maybe(figures.map(|figures| figures.max_mm), DECIMALS);
             // The star's place stays empty where there is none, so that the figures stand under each other.
-            let mark = if star { "*" } else { "\u{2007}" };
-            [rms, Cell { text: format!("{}{mark}", max.text), ..max }]
+            let mark = if figures.is_some() && verification.has_seen(idx, target_idx) { "*" } else { "\u{2007}" };
+            [figures.map(|figures| figures.rms_mm), figures.map(|figures| figures.max_mm)].map(|figure| {
+                let cell = Cell::maybe(figure, DECIMALS);
+                Cell { text: format!("{}{mark}", cell.text), ..cell }
+            })
         });
         let name = calibration_name(&verification.calibrations[idx].origin, verification);
         std::iter::once(Cell::words(name)).chain(cells).collect()
@@ -207,7 +216,7 @@ fn cross_table(verification: &Verification) -> Table {
         title: words::CROSS_TARGETS.to_owned(),
         columns,
         rows: (0..verification.calibrations.len()).map(row).collect(),
-        note: Some(words::OWN_DATA.to_owned()),
+        note: Some(words::CROSS_TARGETS_NOTE.to_owned()),
     }
 }
 

@@ -18,7 +18,7 @@ use crate::text::edges::feature_name;
 use crate::text::figures as words;
 use crate::text::typeset::{decimals_of_std, fixed, signed, std_text, with_std};
 
-use super::sheet::{Multiples, Sheet, Small};
+use super::sheet::{HALF_PAGE, Multiples, Sheet, Small};
 
 /// Parts of the height that a profile and a curve take; the residuals below get the rest.
 const PROFILE_PART: f64 = 0.66;
@@ -102,14 +102,14 @@ fn profiles(seen: &[Seen]) -> Vec<Figure> {
             Small { upper, lower: Some(residual_plot(&shown.model)) }
         };
         let multiples =
-            Multiples { height: 150.0, upper_part: 0.64, legend: shared_legend(seen), x_title: shared::X_AXIS };
+            Multiples { height: 132.0, upper_part: 0.64, legend: shared_legend(seen), x_title: shared::X_AXIS };
         figures.extend(multiples.figures(seen.iter().map(small).collect(), "profiles", words::profiles_title));
     }
     figures
 }
 
 fn one_profile(shown: &Seen) -> Figure {
-    let mut sheet = Sheet::new(330.0);
+    let mut sheet = Sheet::new(HALF_PAGE);
     let mut upper = profile_plot(&shown.model, true);
     upper.legend = legend(&shown.model);
     let mut lower = residual_plot(&shown.model);

@@ -59,7 +59,7 @@ fn errors(target: &Target, tables: &[(Method, &MethodTable)]) -> Option<Figure> 
         plot.heading = Some(heading.to_owned());
         has_values.then_some(plot)
     };
-    let left_out = plot(&|table, row| table.rows.get(row)?.used.as_ref()?.leave_one_out_mm, words::LEFT_OUT);
+    let left_out = plot(&|table, row| table.rows.get(row)?.used.as_ref()?.leave_one_out_mm, words::left_out(target));
     let in_sample = plot(
         &|table, row| Some(table.rows.get(row)?.used.as_ref()?.error_mm(ErrorReference::Mean).norm()),
         words::in_sample(target),
@@ -71,8 +71,11 @@ fn errors(target: &Target, tables: &[(Method, &MethodTable)]) -> Option<Figure> 
     let stacked: Vec<(f64, &Plot)> = plots.iter().map(|plot| (1.0, plot)).collect();
     sheet.stack(&stacked, &area);
     let title = words::errors_title(target);
-    let worst = tables.iter().map(|(method, table)| (*method, table.max_error_mm(ErrorReference::Mean)));
-    Some(sheet.figure("errors", title, words::errors_alt(title, worst)))
+    let largest = |table: &MethodTable| {
+        table.used().map(|(_, used)| used.error_mm(ErrorReference::Mean).norm()).fold(0.0, f64::max)
+    };
+    let worst = tables.iter().map(|(method, table)| (*method, largest(table)));
+    Some(sheet.figure("errors", title, words::errors_alt(target, title, worst)))
 }
 
 /// Where the stations find the target, from two sides, with 1σ ellipses.

@@ -64,17 +64,17 @@ impl Look {
     }
 }
 
-/// The items whose size is not far above the least, the best few of them in their order; and how many are left out.
-fn near<T>(items: Vec<(f64, T)>) -> (Vec<T>, usize) {
-    let count = items.len();
+/// The items whose size is not far above the least, the best few of them in their order; and those that are left out.
+fn near<T>(items: Vec<(f64, T)>) -> (Vec<T>, Vec<T>) {
     let least = items.iter().map(|(size, _)| *size).filter(|size| size.is_finite()).fold(f64::INFINITY, f64::min);
     let mut sizes: Vec<f64> = items.iter().map(|(size, _)| *size).filter(|size| *size <= least * FAR_OFF).collect();
     sizes.sort_by(f64::total_cmp);
     let limit = sizes.get(MOST_SHOWN - 1).or(sizes.last()).copied().unwrap_or(f64::INFINITY);
-    let kept: Vec<T> =
-        items.into_iter().filter(|(size, _)| *size <= limit).map(|(_, item)| item).take(MOST_SHOWN).collect();
-    let num_left_out = count - kept.len();
-    (kept, num_left_out)
+    let (mut kept, mut left_out) = (Vec::new(), Vec::new());
+    for (size, item) in items {
+        if size <= limit && kept.len() < MOST_SHOWN { &mut kept } else { &mut left_out }.push(item);
+    }
+    (kept, left_out)
 }
 
 fn distances(target: &TargetEvidence, looks: &[Look], suffix: &str) -> Option<Figure> {
@@ -86,7 +86,7 @@ fn distances(target: &TargetEvidence, looks: &[Look], suffix: &str) -> Option<Fi
             Some((distances.to_line.rms_mm.max(distances.to_plane.rms_mm), (look, distances)))
         })
         .collect();
-    let (shown, num_left_out) = near(found);
+    let (shown, left_out) = near(found);
     if shown.is_empty() {
         return None;
     }
@@ -111,7 +111,8 @@ fn distances(target: &TargetEvidence, looks: &[Look], suffix: &str) -> Option<Fi
         plot.heading = Some(heading.to_owned());
         sheet.plot(&plot, &area);
     }
-    let title = words::distances_title(&target.name, num_left_out);
+    let left_out: Vec<&str> = left_out.iter().map(|(look, _)| look.name.as_str()).collect();
+    let title = words::distances_title(&target.name, &left_out);
     Some(sheet.figure(format!("distances{suffix}"), title.clone(), title))
 }
 
@@ -125,7 +126,7 @@ fn stability(target: &TargetEvidence, looks: &[Look], suffix: &str) -> Option<Fi
             Some((reach, (look, measurements, stability)))
         })
         .collect();
-    let (shown, num_left_out) = near(found);
+    let (shown, left_out) = near(found);
     let (_, measurements, first) = shown.first()?;
     if measurements.len() > MOST_MEASUREMENTS {
         return None;
@@ -170,7 +171,8 @@ fn stability(target: &TargetEvidence, looks: &[Look], suffix: &str) -> Option<Fi
     let mut sheet = Sheet::new(310.0);
     let area = sheet.legend(&legend);
     sheet.stack(&[(1.0, &plots[0]), (1.0, &plots[1]), (1.18, &plots[2])], &area);
-    let title = words::stability_title(&target.name, first.is_touched, num_left_out);
+    let left_out: Vec<&str> = left_out.iter().map(|(look, ..)| look.name.as_str()).collect();
+    let title = words::stability_title(&target.name, first.is_touched, &left_out);
     Some(sheet.figure(format!("stability{suffix}"), title.clone(), title))
 }
 

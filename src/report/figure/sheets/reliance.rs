@@ -14,7 +14,7 @@ use crate::text::figures as words;
 use crate::text::typeset::std_text;
 
 use super::bars::{grouped, plain, with_accused};
-use super::sheet::Sheet;
+use super::sheet::{HALF_PAGE, Sheet};
 
 /// Residuals beyond these are rare, and hardly chance.
 const RARE: [f64; 2] = [2.0, 3.0];
@@ -62,7 +62,7 @@ fn influence(stations: &[Influence], left_out: Option<&Evidence>) -> Option<Figu
     let mut moves = grouped(names, shared::STATION_AXIS, shared::MOVES_AXIS, &[plain(moves)]);
     moves.heading = Some(words::MOVES.to_owned());
     plots.push(moves);
-    let mut sheet = Sheet::new(whole(plots.len()) * 122.0 + 14.0);
+    let mut sheet = Sheet::new((whole(plots.len()) * 122.0 + 14.0).min(HALF_PAGE));
     let area = sheet.area();
     let stacked: Vec<(f64, &Plot)> = plots.iter().map(|plot| (1.0, plot)).collect();
     sheet.stack(&stacked, &area);

@@ -8,10 +8,10 @@ use crate::report::figure::model::ball_radius_mm;
 use crate::report::figure::palette::{self, Marker, Rgb, method_color};
 use crate::report::figure::plot::{Axis, Dash, Entry, Mark, Note, NoteSide, Plot, Sign};
 use crate::report::figure::{Extent, Figure};
-use crate::session::{Reading, Session, Target};
+use crate::session::{Reading, Session};
 use crate::text::figures as words;
 
-use super::sheet::Sheet;
+use super::sheet::{HALF_PAGE, Sheet};
 use super::space::{Scene, Triad};
 
 /// More stations than this are not all named.
@@ -56,24 +56,27 @@ fn sketch(evidence: &Evidence) -> Option<Figure> {
             scene.laser_plane(base_from_sensor.translation.vector, ends);
         }
         if is_fixed {
-            mark_target(&mut scene, session, solution, Some(pose));
+            mark_target(&mut scene, target, solution, Some(pose));
         }
     }
     if !is_fixed {
-        mark_target(&mut scene, session, solution, None);
+        mark_target(&mut scene, target, solution, None);
     }
-    let mut sheet = Sheet::new(330.0);
+    let is_point = solution.plate.is_none() && !target.uses_radius();
+    let name = words::target(&session.target, is_point);
+    let sign = if is_point { Sign::Solid(Marker::Diamond) } else { Sign::Line(Dash::Solid) };
+    let mut sheet = Sheet::new(HALF_PAGE);
     let legend = [
         Entry::new(Sign::Line(Dash::Solid), palette::AXES[0], "x"),
         Entry::new(Sign::Line(Dash::Solid), palette::AXES[1], "y"),
         Entry::new(Sign::Line(Dash::Solid), palette::AXES[2], "z"),
         Entry::new(Sign::Solid(Marker::Circle), palette::TEXT, words::FLANGE),
         Entry::new(Sign::Bar(crate::report::figure::plot::Filling::Faint), palette::OUTLIER, words::LASER_PLANE),
-        Entry::new(Sign::Line(Dash::Solid), method_color(solution.method), words::target(&session.target)),
+        Entry::new(sign, method_color(solution.method), name),
     ];
     let area = sheet.legend(&legend);
     scene.draw(&area, sheet.page());
-    let title = words::setup_title(&session.target, poses.len(), is_fixed);
+    let title = words::setup_title(name, poses.len(), is_fixed);
     Some(sheet.figure("setup", title.clone(), title))
 }
 
@@ -102,15 +105,15 @@ fn about(point_in_sensor: Vec3) -> [Vec3; 2] {
 }
 
 /// The target where the calibration has it; on a flange that carries it, at a pose.
-fn mark_target(scene: &mut Scene, session: &Session, solution: &Solution, pose: Option<&Rigid>) {
+fn mark_target(scene: &mut Scene, target: &TargetEvidence, solution: &Solution, pose: Option<&Rigid>) {
     let color = method_color(solution.method);
     let place = |point: Vec3| pose.map_or(point, |pose| (pose * nalgebra::Point3::from(point)).coords);
-    match (&session.target, &solution.plate) {
-        (_, Some(plate)) => scene.plate(plate_corners(plate).map(place), color),
-        (Target::Ball { .. }, None) => {
-            scene.ball(place(solution.target_in_base_mm), ball_radius_mm(session).unwrap_or(0.0), color);
+    match &solution.plate {
+        Some(plate) => scene.plate(plate_corners(plate).map(place), color),
+        None if target.uses_radius() => {
+            scene.ball(place(solution.target_in_base_mm), ball_radius_mm(&target.session).unwrap_or(0.0), color);
         }
-        _ => scene.point(place(solution.target_in_base_mm), color),
+        None => scene.point(place(solution.target_in_base_mm), color),
     }
 }
 

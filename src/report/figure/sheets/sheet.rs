@@ -10,8 +10,8 @@ use crate::report::figure::plot::{Entry, Plot};
 pub(super) const WIDTH: f64 = 500.0;
 /// Gap between plots, points.
 pub(super) const GAP: f64 = 10.0;
-/// The highest figure that fits a page with its caption, points.
-const MOST_HEIGHT: f64 = 660.0;
+/// The highest figure of which two fit on an A4 page with their captions, points.
+pub(super) const HALF_PAGE: f64 = 318.0;
 /// Gap between the rows of small plots, points.
 const ROW_GAP: f64 = 8.0;
 
@@ -120,10 +120,10 @@ impl Multiples {
         let num_columns = match count {
             0 => return Vec::new(),
             1..=2 => 2,
-            3..=9 => 3,
+            3..=6 => 3,
             _ => 4,
         };
-        let most_rows = rows_within(MOST_HEIGHT - LEGEND_ROOM - frame::TITLE_HEIGHT, self.height);
+        let most_rows = rows_within(HALF_PAGE - LEGEND_ROOM - frame::TITLE_HEIGHT, self.height);
         let num_pages = count.div_ceil(num_columns * most_rows);
         // Pages are about equally full.
         let rows_a_page = count.div_ceil(num_columns).div_ceil(num_pages);

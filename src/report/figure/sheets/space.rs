@@ -2,7 +2,8 @@
 
 use crate::geometry::{Rigid, Vec3};
 use crate::report::figure::Orbit;
-use crate::report::figure::ink::{Align, Area, Fill, Place, Stroke};
+use crate::report::figure::frame::whole;
+use crate::report::figure::ink::{Align, Area, Fill, Label, Place, Stroke};
 use crate::report::figure::page::{Page, TEXT_SIZE, label, on_middle};
 use crate::report::figure::palette::{self, Marker, Rgb};
 use crate::report::figure::plot::{Dash, ellipse};
@@ -145,8 +146,9 @@ impl Scene {
         for thing in &self.things {
             view.thing(thing, page);
         }
+        let crowd = view.crowd(&self.things);
         for thing in &self.things {
-            view.names(thing, area, page);
+            view.names(thing, &crowd, area, page);
         }
         view.scale_bar(area, page);
     }
@@ -217,7 +219,7 @@ impl View {
     }
 
     /// Names of frames beside them, and of the base's axes at their ends, where there is room for them.
-    fn names(&self, thing: &Thing, room: &Area, page: &mut Page) {
+    fn names(&self, thing: &Thing, crowd: &[Place], room: &Area, page: &mut Page) {
         let Thing::Frame { pose, name, is_strong } = thing else { return };
         let origin = self.at(pose.translation.vector);
         if *is_strong {
@@ -227,27 +229,59 @@ impl View {
                 let along = [end[0] - origin[0], end[1] - origin[1]];
                 let length = along[0].hypot(along[1]).max(1e-9);
                 let at = [0, 1].map(|axis| end[axis] + along[axis] / length * 6.0);
-                name_at(letter, at, color, room, page);
-            }
-        }
-        if let Some(name) = name {
-            // Away from the axes.
-            let middle = self.axes(thing).iter().fold([0.0; 2], |sum, end| [sum[0] + end[0], sum[1] + end[1]]);
-            let away = [origin[0] - middle[0] / 3.0, origin[1] - middle[1] / 3.0];
-            let length = away[0].hypot(away[1]).max(1e-9);
-            for distance in [8.0, 11.0, 15.0, 20.0] {
-                for turn in [0.0_f64, 0.6, -0.6, 1.2, -1.2, 1.9, -1.9, 2.6, -2.6] {
-                    let (sin, cos) = turn.sin_cos();
-                    let along = [(away[0] * cos - away[1] * sin) / length, (away[0] * sin + away[1] * cos) / length];
-                    // A wide name stands farther off sideways.
-                    let aside = distance + (typeface::width(name, TEXT_SIZE, Weight::Regular) / 2.0 - 3.0).max(0.0);
-                    let at = [origin[0] + along[0] * aside, origin[1] + along[1] * distance];
-                    if name_at(name, at, palette::TEXT, room, page) {
-                        return;
-                    }
+                if let Some(label) = free_label(letter, at, color, room, page) {
+                    page.write(label);
                 }
             }
         }
+        if let Some(label) = name.as_deref().and_then(|name| self.beside(thing, name, crowd, room, page)) {
+            page.area(label.area().outline().to_vec(), Fill::veil(Rgb::WHITE, 0.6));
+            page.write(label);
+        }
+    }
+
+    /// The best free place for the name of a frame: near it, away from its axes, on no axis of others.
+    fn beside(&self, thing: &Thing, name: &str, crowd: &[Place], room: &Area, page: &Page) -> Option<Label> {
+        let Thing::Frame { pose, .. } = thing else { return None };
+        let origin = self.at(pose.translation.vector);
+        let middle = self.axes(thing).iter().fold([0.0; 2], |sum, end| [sum[0] + end[0], sum[1] + end[1]]);
+        let away = [origin[0] - middle[0] / 3.0, origin[1] - middle[1] / 3.0];
+        let length = away[0].hypot(away[1]).max(1e-9);
+        let mut best: Option<(f64, Label)> = None;
+        for distance in [8.0, 11.0, 15.0, 20.0] {
+            for turn in [0.0_f64, 0.6, -0.6, 1.2, -1.2, 1.9, -1.9, 2.6, -2.6] {
+                let (sin, cos) = turn.sin_cos();
+                let along = [(away[0] * cos - away[1] * sin) / length, (away[0] * sin + away[1] * cos) / length];
+                // A wide name stands farther off sideways.
+                let aside = distance + (typeface::width(name, TEXT_SIZE, Weight::Regular) / 2.0 - 3.0).max(0.0);
+                let at = [origin[0] + along[0] * aside, origin[1] + along[1] * distance];
+                let Some(label) = free_label(name, at, palette::TEXT, room, page) else { continue };
+                let area = label.area();
+                let covered = crowd.iter().filter(|place| area.holds(**place)).count();
+                let cost = distance + 2.0 * turn.abs() + 5.0 * whole(covered);
+                if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+                    best = Some((cost, label));
+                }
+            }
+        }
+        best.map(|(_, label)| label)
+    }
+
+    /// Places that a name should not cover: a sample of the axes of all frames.
+    fn crowd(&self, things: &[Thing]) -> Vec<Place> {
+        const NUM_STEPS: u32 = 12;
+        let of_frame = |thing: &Thing| -> Vec<Place> {
+            let Thing::Frame { pose, .. } = thing else { return Vec::new() };
+            let origin = self.at(pose.translation.vector);
+            let along = |end: Place| {
+                (0..=NUM_STEPS).map(move |step| {
+                    let part = f64::from(step) / f64::from(NUM_STEPS);
+                    [0, 1].map(|axis| origin[axis] + (end[axis] - origin[axis]) * part)
+                })
+            };
+            self.axes(thing).into_iter().flat_map(along).collect()
+        };
+        things.iter().flat_map(of_frame).collect()
     }
 
     /// A length to compare with, at the lower right.
@@ -268,15 +302,10 @@ impl View {
     }
 }
 
-/// Writes a name about a place if nothing else is written there.
-fn name_at(text: &str, [x, y]: Place, color: Rgb, room: &Area, page: &mut Page) -> bool {
+/// A name about a place, if nothing else is written there.
+fn free_label(text: &str, [x, y]: Place, color: Rgb, room: &Area, page: &Page) -> Option<Label> {
     let mut label = label(text, [x, on_middle(y, TEXT_SIZE)], color);
     label.align = Align::Middle;
     let area = label.area();
-    let is_free = room.holds_all(&area) && page.is_free(&area.grown(0.5));
-    if is_free {
-        page.area(area.outline().to_vec(), Fill::veil(Rgb::WHITE, 0.6));
-        page.write(label);
-    }
-    is_free
+    (room.holds_all(&area) && page.is_free(&area.grown(0.5))).then_some(label)
 }

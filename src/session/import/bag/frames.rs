@@ -8,7 +8,7 @@ use super::messages::{TimedPose, TimedTransform};
 const MAX_TRANSFORMS: usize = 3_000_000;
 /// Between two transforms that are at most so many times as far apart as poses and profiles may be, a frame is believed
 /// to have moved steadily.
-const MAX_GAP: u64 = 4;
+pub(super) const MAX_GAP: u32 = 4;
 /// Frames between a frame and the root; more are a circle.
 const MAX_DEPTH: usize = 64;
 
@@ -24,6 +24,17 @@ struct Edge {
     is_static: bool,
     /// Ascending in time once [`Frames::sort`] was called.
     parent_from_child: Vec<TimedPose>,
+}
+
+/// A frame as it is listed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ListedFrame {
+    /// Its name.
+    pub name: String,
+    /// The frame that it hangs below; none for a root.
+    pub parent: Option<String>,
+    /// Whether it never moves in that.
+    pub is_static: bool,
 }
 
 /// All frames of a bag.
@@ -82,6 +93,16 @@ impl Frames {
         names.sort();
         names.dedup();
         names
+    }
+
+    /// Every frame with its parent, by name.
+    pub fn listed(&self) -> Vec<ListedFrame> {
+        let listed = |name: String| {
+            let edge = self.edges.get(&name);
+            let parent = edge.map(|edge| edge.parent.clone());
+            ListedFrame { name, parent, is_static: edge.is_some_and(|edge| edge.is_static) }
+        };
+        self.names().into_iter().map(listed).collect()
     }
 
     /// The likeliest frame of the base: by its name, else a frame without a parent.
@@ -198,7 +219,7 @@ impl<'e> Walker<'e> {
             _ if self.edge.is_static => poses.last().map(|pose| TimedPose { time_ns, ..*pose }),
             (_, Some(now)) if now.time_ns == time_ns => Some(*now),
             (Some(before), Some(after))
-                if before.time_ns.abs_diff(after.time_ns) <= tolerance_ns.saturating_mul(MAX_GAP) =>
+                if before.time_ns.abs_diff(after.time_ns) <= tolerance_ns.saturating_mul(u64::from(MAX_GAP)) =>
             {
                 Some(before.towards(after, time_ns))
             }

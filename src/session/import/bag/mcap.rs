@@ -20,6 +20,8 @@ use crate::session::import::ImportError;
 const HEAD_BYTES: usize = 9;
 /// No record or chunk of ours is larger, packed or not.
 const MAX_RECORD_BYTES: u64 = 256 << 20;
+/// Nor is a list of the messages in a chunk.
+const MAX_LIST_BYTES: u64 = 16 << 20;
 /// Unpacked, a chunk is at most so many times as long as the whole file, ...
 const MAX_EXPANSION: u64 = 300;
 /// ... or so long, in a file that is small.
@@ -54,6 +56,11 @@ enum Record<'b> {
     },
     /// Messages by channel.
     Counts(HashMap<u16, u64>),
+    /// From when to when the messages of a chunk were recorded, and where it is listed which those of a channel are.
+    Chunk {
+        recorded_ns: [i64; 2],
+        listed_at: Vec<(u16, u64)>,
+    },
     Other,
 }
 
@@ -105,7 +112,7 @@ fn parse(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
         op::MESSAGE => {
             let (channel_id, _sequence) = (fields.u16()?, fields.u32()?);
             let (log_time, _publish_time) = (fields.u64()?, fields.u64()?);
-            Record::Message { channel_id, log_time_ns: i64::try_from(log_time).unwrap_or(i64::MAX), data: fields.0 }
+            Record::Message { channel_id, log_time_ns: time(log_time), data: fields.0 }
         }
         op::STATISTICS => {
             // Numbers of messages, schemas, channels, attachments, metadata and chunks, and two times.
@@ -117,8 +124,23 @@ fn parse(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
             }
             Record::Counts(counts)
         }
+        op::CHUNK_INDEX => {
+            let recorded_ns = [fields.u64()?, fields.u64()?].map(time);
+            // Where the chunk begins, and its length.
+            fields.bytes::<{ 2 * 8 }>()?;
+            let mut entries = Fields(fields.block()?);
+            let mut listed_at = Vec::new();
+            while !entries.0.is_empty() {
+                listed_at.push((entries.u16()?, entries.u64()?));
+            }
+            Record::Chunk { recorded_ns, listed_at }
+        }
         _ => Record::Other,
     })
+}
+
+fn time(ns: u64) -> i64 {
+    i64::try_from(ns).unwrap_or(i64::MAX)
 }
 
 /// The checksum and the name of the compression of a chunk, and what is packed in it.
@@ -161,6 +183,29 @@ impl Walk {
         self.file.seek(SeekFrom::Start(to)).map(drop).map_err(|error| error.to_string())
     }
 
+    /// The times in a list of the messages of a channel in a chunk; `None` where there is no such list.
+    fn listed_times(&mut self, at: u64, num_bytes: u64) -> Option<Vec<i64>> {
+        self.seek(at, num_bytes).ok()?;
+        let mut head = [0; HEAD_BYTES];
+        self.file.read_exact(&mut head).ok()?;
+        let [opcode, length @ ..] = head;
+        let length = u64::from_le_bytes(length);
+        if opcode != op::MESSAGE_INDEX || length > MAX_LIST_BYTES || length > self.left {
+            return None;
+        }
+        let mut body = vec![0; usize::try_from(length).ok()?];
+        self.file.read_exact(&mut body).ok()?;
+        let mut fields = Fields(&body);
+        fields.u16()?;
+        let mut entries = Fields(fields.block()?);
+        let mut times = Vec::new();
+        while !entries.0.is_empty() {
+            let (log_time, _offset) = (entries.u64()?, entries.u64()?);
+            times.push(time(log_time));
+        }
+        Some(times)
+    }
+
     /// From the present place to the end of the data, or to the footer.
     fn records(&mut self, on_record: OnRecord<'_>) -> Result<(), Stop> {
         loop {
@@ -175,7 +220,7 @@ impl Walk {
             })?;
             match opcode {
                 op::DATA_END | op::FOOTER => return Ok(()),
-                op::SCHEMA | op::CHANNEL | op::MESSAGE | op::CHUNK | op::STATISTICS => {}
+                op::SCHEMA | op::CHANNEL | op::MESSAGE | op::CHUNK | op::STATISTICS | op::CHUNK_INDEX => {}
                 _ => {
                     let length = i64::try_from(length).map_err(|_| Stop::Damage("a record without end".to_owned()))?;
                     self.file.seek_relative(length).map_err(|error| Stop::Damage(error.to_string()))?;
@@ -278,28 +323,48 @@ struct Directory {
     /// By number, so that topics come in one order each time: the schema's number, the topic, the encoding.
     channels: BTreeMap<u16, (u16, String, String)>,
     counts: HashMap<u16, u64>,
+    /// When the first and the last message of a channel were recorded.
+    recorded_ns: HashMap<u16, [i64; 2]>,
+    /// The chunks with the first and the last of a channel: when they begin or end, and where its messages are listed.
+    ends: HashMap<u16, [(i64, u64); 2]>,
 }
 
 impl Directory {
+    fn take_time(&mut self, channel_id: u16, time_ns: i64) {
+        let [first, last] = self.recorded_ns.entry(channel_id).or_insert([time_ns; 2]);
+        (*first, *last) = ((*first).min(time_ns), (*last).max(time_ns));
+    }
+
     fn take(&mut self, record: Record<'_>) {
         match record {
             Record::Schema { id, name } => drop(self.schemas.insert(id, name)),
             Record::Channel { id, schema_id, topic, encoding } => {
                 self.channels.insert(id, (schema_id, topic, encoding));
             }
-            Record::Message { channel_id, .. } => *self.counts.entry(channel_id).or_default() += 1,
+            Record::Message { channel_id, log_time_ns, .. } => {
+                *self.counts.entry(channel_id).or_default() += 1;
+                self.take_time(channel_id, log_time_ns);
+            }
             Record::Counts(counts) => self.counts = counts,
+            Record::Chunk { recorded_ns: [from_ns, to_ns], listed_at } => {
+                for (channel_id, at) in listed_at {
+                    let [first, last] = self.ends.entry(channel_id).or_insert([(from_ns, at), (to_ns, at)]);
+                    *first = (*first).min((from_ns, at));
+                    *last = (*last).max((to_ns, at));
+                }
+            }
             Record::Other => {}
         }
     }
 
     fn topics(self) -> Vec<FileTopic> {
-        let Self { schemas, channels, counts } = self;
+        let Self { schemas, channels, counts, recorded_ns, .. } = self;
         let topic = |(id, (schema_id, name, encoding)): (u16, (u16, String, String))| FileTopic {
             name,
             type_name: schemas.get(&schema_id).cloned().unwrap_or_default(),
             encoding,
             num_messages: counts.get(&id).copied().unwrap_or_default(),
+            recorded_ns: recorded_ns.get(&id).copied(),
         };
         channels.into_iter().map(topic).collect()
     }
@@ -352,7 +417,18 @@ fn summary(path: &Path) -> Result<Option<Directory>, BagError> {
         directory.take(record);
         Ok(())
     });
-    Ok((outcome.is_ok() && has_counts && !directory.channels.is_empty()).then_some(directory))
+    if outcome.is_err() || !has_counts || directory.channels.is_empty() {
+        return Ok(None);
+    }
+    // Of each channel the lists of its first and of its last chunk.
+    for (channel_id, ends) in std::mem::take(&mut directory.ends) {
+        for (_, at) in ends {
+            for time_ns in walk.listed_times(at, num_bytes).unwrap_or_default() {
+                directory.take_time(channel_id, time_ns);
+            }
+        }
+    }
+    Ok(Some(directory))
 }
 
 /// See [`super::storage::stream`].
@@ -379,7 +455,7 @@ pub(super) fn stream(
                         take(RawMessage { topic_idx: *topic_idx, log_time_ns, data }).map_err(Stop::Error)?;
                     }
                 }
-                Record::Counts(_) | Record::Other => {}
+                Record::Counts(_) | Record::Chunk { .. } | Record::Other => {}
             }
             Ok(())
         })

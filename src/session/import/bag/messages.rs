@@ -103,12 +103,12 @@ fn pose(cdr: &mut Cdr<'_>, time_ns: i64) -> Result<TimedPose, BadMessage> {
     Ok(TimedPose { time_ns, translation: Vec3::new(x, y, z), rotation: UnitQuaternion::new_normalize(quaternion) })
 }
 
-/// A `PoseStamped`; where its header has no time that of the recording counts.
-pub(super) fn pose_stamped(message: &[u8], log_time_ns: i64, header: bool) -> Result<TimedPose, BadMessage> {
+/// A `PoseStamped` with the frame that it is in; where its header has no time that of the recording counts.
+pub(super) fn pose_stamped(message: &[u8], log_time_ns: i64, header: bool) -> Result<(String, TimedPose), BadMessage> {
     let mut cdr = Cdr::new(message)?;
     let stamp_ns = stamp(&mut cdr)?.filter(|_| header);
-    cdr.string()?;
-    pose(&mut cdr, stamp_ns.unwrap_or(log_time_ns))
+    let frame = frame_name(&cdr.string()?);
+    Ok((frame, pose(&mut cdr, stamp_ns.unwrap_or(log_time_ns))?))
 }
 
 /// The transforms of a `TFMessage`.

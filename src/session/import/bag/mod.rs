@@ -12,11 +12,13 @@ mod read;
 mod settle;
 mod sqlite;
 mod storage;
+mod sweeps;
 
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+pub use frames::ListedFrame;
 pub use line::{ProfileAxes, SignedAxis};
 pub use messages::MessageKind;
 pub(super) use read::read;
@@ -41,6 +43,8 @@ pub struct Topic {
     pub kind: Option<MessageKind>,
     /// How many there are.
     pub num_messages: u64,
+    /// When the first and the last of them were recorded, as far as the files tell without being read as a whole.
+    pub recorded_ns: Option<[i64; 2]>,
 }
 
 /// What is wrong with a bag.
@@ -103,6 +107,8 @@ pub struct BagOptions {
     pub still_within_mm: f64,
     /// ... and does not turn further.
     pub still_within_deg: f64,
+    /// Whether stays along a line, with one orientation, are a sweep.
+    pub joins_stays: bool,
 }
 
 impl Default for BagOptions {
@@ -119,6 +125,7 @@ impl Default for BagOptions {
             still_for_s: 0.5,
             still_within_mm: 0.05,
             still_within_deg: 0.02,
+            joins_stays: true,
         }
     }
 }
@@ -141,6 +148,10 @@ pub struct BagReport {
     pub pose_topic: String,
     /// The frames between which, where they came as transforms: base, flange.
     pub frames: Option<[String; 2]>,
+    /// All frames of the bag, where poses came as transforms.
+    pub listed_frames: Vec<ListedFrame>,
+    /// The frame that poses are in by their headers, where they came as poses.
+    pub pose_frame: Option<String>,
     /// Poses that were read.
     pub num_poses: usize,
     /// Poses at the time of another, left out.
@@ -157,6 +168,10 @@ pub struct BagReport {
     pub num_stays: Option<usize>,
     /// Stays without a profile, left out.
     pub num_stays_without_profile: usize,
+    /// Sweeps that stays were joined into, ...
+    pub num_sweeps: usize,
+    /// ... and the stays of them.
+    pub num_joined_stays: usize,
     /// Profiles that were paired with a pose.
     pub num_paired: usize,
     /// Profiles taken while the robot moved, left out.
@@ -182,6 +197,25 @@ fn unreadable(path: &Path, found: &str) -> BagError {
     }
 }
 
+/// What is wrong where of a recording there is nothing but its `metadata.yaml`; `None` if that is another file.
+pub(super) fn only_metadata(path: &Path) -> Option<BagError> {
+    /// A recording in many parts names each of them.
+    const MAX_BYTES: u64 = 1 << 20;
+    const MAX_NAMED: usize = 3;
+    let is_small = path.metadata().is_ok_and(|metadata| metadata.len() <= MAX_BYTES);
+    let text =
+        std::fs::read_to_string(path).ok().filter(|text| is_small && text.contains("rosbag2_bagfile_information"))?;
+    let listed = text.lines().skip_while(|line| !line.contains("relative_file_paths")).skip(1);
+    let names: Vec<&str> = listed.map_while(|line| line.trim().strip_prefix("- ")).take(MAX_NAMED).collect();
+    let needed = if names.is_empty() { "its .mcap or .db3 files".to_owned() } else { names.join(", ") };
+    Some(BagError {
+        file: path.display().to_string(),
+        found: "the description of a recording, and none of its files".to_owned(),
+        needed: format!("{needed} beside it"),
+        remedy: "copy the whole folder of the recording".to_owned(),
+    })
+}
+
 /// Whether a file is part of a bag, by its first bytes.
 ///
 /// # Errors
@@ -203,11 +237,17 @@ impl Bag {
             };
             // Why a file ends early is said when it is read.
             let (topics, _) = storage::topics(path, storage)?;
-            for storage::FileTopic { name, type_name, encoding, num_messages } in topics {
+            for storage::FileTopic { name, type_name, encoding, num_messages, recorded_ns } in topics {
                 let kind = MessageKind::of_type(&type_name).filter(|_| encoding == "cdr");
-                let topic = Topic { name, type_name, kind, num_messages };
+                let topic = Topic { name, type_name, kind, num_messages, recorded_ns };
                 match bag.topics.iter_mut().find(|known| known.name == topic.name) {
-                    Some(known) if known.type_name == topic.type_name => known.num_messages += num_messages,
+                    Some(known) if known.type_name == topic.type_name => {
+                        known.num_messages += num_messages;
+                        known.recorded_ns = match (known.recorded_ns, recorded_ns) {
+                            (Some([a, b]), Some([c, d])) => Some([a.min(c), b.max(d)]),
+                            (one, other) => one.or(other),
+                        };
+                    }
                     // Of two types under one name the one that we can read.
                     Some(known) if known.kind.is_none() && topic.kind.is_some() => *known = topic,
                     Some(_) => {}
@@ -218,6 +258,12 @@ impl Bag {
         }
         bag.topics.sort_by(|a, b| a.name.cmp(&b.name));
         Ok(bag)
+    }
+
+    /// When the recording began, as far as that is known.
+    #[must_use]
+    pub fn start_ns(&self) -> Option<i64> {
+        self.topics.iter().filter_map(|topic| topic.recorded_ns).map(|[first, _]| first).min()
     }
 
     /// The topics that poses, or profiles, can come from.

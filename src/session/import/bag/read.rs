@@ -10,13 +10,15 @@ use crate::session::import::gather::{Gathered, RawPose};
 use crate::session::import::program::{MAX_PREVIEW_ROWS, head, show};
 use crate::session::import::read::Progress;
 use crate::session::import::{ImportError, ImportOptions, MAX_POSES, Preview, Role};
+use crate::watch::Cancelled;
 
 use super::cdr::BadMessage;
 use super::frames::Frames;
 use super::line;
 use super::messages::{self, MessageKind, Points, TimedPose};
-use super::settle::{Standing, Stillness, pose_at, still};
+use super::settle::{Standing, Stillness, longest_gap_ns, pose_at, still};
 use super::storage::{self, RawMessage};
+use super::sweeps::{Straightness, sweeps};
 use super::{Bag, BagError, BagOptions, BagReport, Clock, ProfileAxes, Taking, Topic, Unreadable};
 
 /// Poses that are kept: at 500 Hz an hour and a half.
@@ -25,8 +27,13 @@ const MAX_BAG_POSES: usize = 3_000_000;
 const MAX_POINTS: usize = 16_000_000;
 /// Profiles of one stay that are kept for their median.
 const MAX_OF_A_STAY: usize = 25;
+/// Numbers of the preview are rounded to a part of this: a tenth of a micrometre in metres. What is read is not.
+const SHOWN: f64 = 1e7;
 /// Captures that follow each other within this are of one station, degrees: a sweep keeps its orientation.
 const ONE_ORIENTATION_DEG: f64 = 0.5;
+/// A robot that steps along a line keeps to it and to its orientation within these.
+const STRAIGHT_WITHIN_MM: f64 = 0.2;
+const STRAIGHT_WITHIN_DEG: f64 = 0.1;
 /// Where a cloud does not say its unit, coordinates that all lie within are metres.
 const MAX_METRES: f64 = 5.0;
 /// Messages after which it is asked whether to go on.
@@ -43,7 +50,11 @@ pub(in crate::session::import) fn read(
     preview: &mut Preview,
     progress: &mut Progress<'_>,
 ) -> Result<BagReport, ImportError> {
-    let mut reader = Reader { name, bag, report: BagReport::default(), progress, num_messages: 0 };
+    let mut reader = Reader { name, bag, report: BagReport::default(), progress, num_messages: 0, num_expected: 0 };
+    for (wanted, poses) in [(&options.bag.pose_topic, true), (&options.bag.profile_topic, false)] {
+        let topic = reader.topic(wanted.as_deref(), poses)?;
+        reader.num_expected += topic.map_or(0, |topic| usize::try_from(topic.num_messages).unwrap_or_default());
+    }
     let said = options.notation.unwrap_or(PoseNotation { length_unit: LengthUnit::Metres, ..*fallback });
     // However poses are written elsewhere, messages have quaternions.
     let notation = PoseNotation { orientation: OrientationForm::QuaternionXyzw, ..said };
@@ -55,10 +66,11 @@ pub(in crate::session::import) fn read(
         for_ns: ns(options.bag.still_for_s * 1e3),
         within: options.bag.still_within_mm / notation.length_unit.in_mm(),
         within_rad: options.bag.still_within_deg.to_radians(),
+        gap_ns: longest_gap_ns(&poses, ns(options.bag.pair_within_ms)),
     };
     let stays: Vec<Stay> = match options.bag.taking {
         Some(Taking::EveryProfile) => Vec::new(),
-        _ => still(&poses, &stillness, &mut || reader.progress.tick())?
+        _ => still(&poses, &stillness, &mut || reader.tick())?
             .into_iter()
             .map(|Standing { range, pose }| Stay {
                 from_ns: poses[range.start].time_ns,
@@ -79,22 +91,14 @@ pub(in crate::session::import) fn read(
     head(preview, gathered.notation());
     preview.header.push("points".to_owned());
     preview.roles.push(Role::Ignore);
-    let mut label = 0;
-    let mut first_of_station: Option<TimedPose> = None;
-    for (idx, Taken { pose, profile }) in taken.into_iter().enumerate() {
-        let continues = taking == Taking::EveryProfile
-            && first_of_station
-                .is_some_and(|first| first.rotation.angle_to(&pose.rotation) <= ONE_ORIENTATION_DEG.to_radians());
-        if !continues {
-            label += 1;
-            first_of_station = Some(pose);
-        }
-        let label = label.to_string();
+    let station_of = stations(&taken, taking, options.bag.joins_stays, notation.length_unit, &mut report);
+    for (idx, (Taken { pose, profile }, station)) in taken.into_iter().zip(station_of).enumerate() {
+        let label = (station + 1).to_string();
         let [x, y, z] = pose.translation.into();
         let [i, j, k, w] = pose.rotation.coords.into();
         let numbers = [x, y, z, i, j, k, w];
         if preview.rows.len() < MAX_PREVIEW_ROWS {
-            show(preview, idx + 1, &label, &numbers);
+            show(preview, idx + 1, &label, &numbers.map(|number| (number * SHOWN).round() / SHOWN));
             if let Some((_, cells)) = preview.rows.last_mut() {
                 cells.push(profile.as_ref().map_or(0, |profile| profile.valid_points().count()).to_string());
             }
@@ -115,6 +119,45 @@ pub(in crate::session::import) fn read(
         }
     }
     Ok(report)
+}
+
+/// Which station each capture is of.
+fn stations(
+    taken: &[Taken],
+    taking: Taking,
+    joins_stays: bool,
+    unit: LengthUnit,
+    report: &mut BagReport,
+) -> Vec<usize> {
+    let mut station_of = Vec::with_capacity(taken.len());
+    if taking == Taking::EveryProfile {
+        let mut station = 0;
+        let mut first: Option<TimedPose> = None;
+        for Taken { pose, .. } in taken {
+            let turn = first.map(|first| first.rotation.angle_to(&pose.rotation));
+            if turn.is_some_and(|turn| turn > ONE_ORIENTATION_DEG.to_radians()) {
+                station += 1;
+                first = None;
+            }
+            first.get_or_insert(*pose);
+            station_of.push(station);
+        }
+        return station_of;
+    }
+    if !joins_stays {
+        return (0..taken.len()).collect();
+    }
+    let poses: Vec<TimedPose> = taken.iter().map(|taken| taken.pose).collect();
+    let straightness =
+        Straightness { within: STRAIGHT_WITHIN_MM / unit.in_mm(), within_rad: STRAIGHT_WITHIN_DEG.to_radians() };
+    for (station, sweep) in sweeps(&poses, &straightness).into_iter().enumerate() {
+        if sweep.len() > 1 {
+            report.num_sweeps += 1;
+            report.num_joined_stays += sweep.len();
+        }
+        station_of.extend(sweep.map(|_| station));
+    }
+    station_of
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "durations of minutes; beyond, it is cut off at the longest")]
@@ -237,9 +280,16 @@ struct Reader<'r, 'w> {
     report: BagReport,
     progress: &'r mut Progress<'w>,
     num_messages: usize,
+    /// Of the topics that are read, as far as that is known beforehand.
+    num_expected: usize,
 }
 
 impl Reader<'_, '_> {
+    /// Asks whether to go on.
+    fn tick(&mut self) -> Result<(), Cancelled> {
+        self.progress.tick_within(self.num_messages, self.num_expected)
+    }
+
     fn error(&self, found: String, needed: &str, remedy: &str) -> ImportError {
         let (needed, remedy) = (needed.to_owned(), remedy.to_owned());
         ImportError::Bag(BagError { file: self.name.to_owned(), found, needed, remedy })
@@ -282,10 +332,11 @@ impl Reader<'_, '_> {
                 topics.iter().position(|topic| topic.name == name && topic.type_name == type_name)
             };
             let (report, num_messages, progress) = (&mut self.report, &mut self.num_messages, &mut *self.progress);
+            let num_expected = self.num_expected;
             let damage = storage::stream(path, *storage, &wanted, &mut |message| {
                 *num_messages += 1;
                 if num_messages.is_multiple_of(TICK_EVERY) {
-                    progress.tick()?;
+                    progress.tick_within(*num_messages, num_expected)?;
                 }
                 if let Err(bad) = take(report, message) {
                     let topic = topics.get(message.topic_idx).map_or("", |topic| topic.name.as_str());
@@ -334,7 +385,9 @@ impl Reader<'_, '_> {
                     report.num_beyond += 1;
                     return Ok(());
                 }
-                poses.push(messages::pose_stamped(message.data, message.log_time_ns, has_header)?);
+                let (frame, pose) = messages::pose_stamped(message.data, message.log_time_ns, has_header)?;
+                report.pose_frame.get_or_insert(frame);
+                poses.push(pose);
                 Ok(())
             })?;
             poses.sort_by_key(|pose| pose.time_ns);
@@ -375,6 +428,7 @@ impl Reader<'_, '_> {
             Ok(())
         })?;
         frames.sort();
+        self.report.listed_frames = frames.listed();
         (self.report.num_contradicting, self.report.num_of_same_time) =
             (frames.num_contradicting, frames.num_of_same_time);
         let base = options.base_frame.clone().or_else(|| frames.likely_base());
@@ -475,6 +529,7 @@ mod tests {
             type_name: "tf2_msgs/msg/TFMessage".to_owned(),
             kind: Some(MessageKind::Transforms),
             num_messages: 1,
+            recorded_ns: None,
         });
         let with = |chosen: &str| -> Vec<&str> {
             frames_with(&topics, chosen).into_iter().map(|topic| topic.name.as_str()).collect()

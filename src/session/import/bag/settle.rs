@@ -6,6 +6,7 @@ use nalgebra::{Quaternion, UnitQuaternion};
 
 use crate::geometry::{Vec3, stats};
 
+use super::frames::MAX_GAP;
 use super::messages::TimedPose;
 
 impl TimedPose {
@@ -57,6 +58,22 @@ pub(super) struct Stillness {
     /// In the unit of the poses.
     pub within: f64,
     pub within_rad: f64,
+    /// Of a longer time without a pose nothing is known: the robot may have been anywhere.
+    pub gap_ns: i64,
+}
+
+/// The longest time between two poses that is no gap: by what is allowed between a pose and a profile, or, of a robot that
+/// seldom sends its pose, by how often it does.
+pub(super) fn longest_gap_ns(poses: &[TimedPose], tolerance_ns: i64) -> i64 {
+    /// Times between poses that are looked at.
+    const MOST: usize = 10_000;
+    let every = poses.len() / MOST + 1;
+    let mut between: Vec<i64> =
+        poses.windows(2).step_by(every).map(|pair| pair[1].time_ns.saturating_sub(pair[0].time_ns)).collect();
+    between.sort_unstable();
+    let usual_ns = between.get(between.len() / 2).copied().unwrap_or_default();
+    // As in frames: a few poses may get lost.
+    i64::from(MAX_GAP).saturating_mul(tolerance_ns.max(usual_ns))
 }
 
 /// A stay of the robot.
@@ -78,7 +95,7 @@ pub(super) fn still<E>(
     const PARTS: i64 = 256;
     /// Poses that are looked at until the next tick.
     const TICK_EVERY: usize = 1 << 20;
-    let Stillness { for_ns, within, within_rad } = *stillness;
+    let Stillness { for_ns, within, within_rad, gap_ns } = *stillness;
     let mut found: Vec<Standing> = Vec::new();
     let (mut start, mut looked_at) = (0, 0);
     while let Some(first) = poses.get(start) {
@@ -86,8 +103,10 @@ pub(super) fn still<E>(
         if left_ns < for_ns {
             break;
         }
-        let moved = poses[start..].iter().position(|pose| !pose.is_near(first, within, within_rad));
-        let end = moved.map_or(poses.len(), |moved| start + moved);
+        let is_behind_gap = |idx: usize| is_gap(&poses[idx - 1], &poses[idx], gap_ns);
+        let end = (start + 1..poses.len())
+            .find(|idx| !poses[*idx].is_near(first, within, within_rad) || is_behind_gap(*idx))
+            .unwrap_or(poses.len());
         looked_at += end - start;
         if looked_at >= TICK_EVERY {
             tick()?;
@@ -124,6 +143,10 @@ pub(super) fn still<E>(
     Ok(found)
 }
 
+fn is_gap(before: &TimedPose, after: &TimedPose, gap_ns: i64) -> bool {
+    after.time_ns.saturating_sub(before.time_ns) > gap_ns
+}
+
 /// Whether the robot stood at one place and was away but for a moment: noise, a single wrong pose, or the end of a slow
 /// approach part one stay in two.
 fn is_one_stay(poses: &[TimedPose], stay: &Standing, later: &Standing, stillness: &Stillness) -> bool {
@@ -131,7 +154,9 @@ fn is_one_stay(poses: &[TimedPose], stay: &Standing, later: &Standing, stillness
     const MAX_POSES: usize = 2;
     let away = stay.range.end..later.range.start;
     let away_ns = poses[away.end].time_ns.saturating_sub(poses[away.start - 1].time_ns);
+    let mut between = poses[away.start - 1..=away.end].windows(2);
     (away_ns < stillness.for_ns || away.len() <= MAX_POSES)
+        && !between.any(|pair| is_gap(&pair[0], &pair[1], stillness.gap_ns))
         && stay.pose.is_near(&later.pose, stillness.within, stillness.within_rad)
 }
 
@@ -188,7 +213,7 @@ mod tests {
         }
     }
 
-    const STILL: Stillness = Stillness { for_ns: 500 * MS, within: 0.05, within_rad: 0.001 };
+    const STILL: Stillness = Stillness { for_ns: 500 * MS, within: 0.05, within_rad: 0.001, gap_ns: 200 * MS };
 
     fn ranges(poses: &[TimedPose]) -> Vec<Range<usize>> {
         let mut tick = || Ok::<_, std::convert::Infallible>(());
@@ -244,6 +269,19 @@ mod tests {
         let away: Vec<TimedPose> =
             (0..300).map(|idx| pose(idx * 20, if (100..200).contains(&idx) { 5.0 } else { 0.0 }, 0.0)).collect();
         assert_eq!(ranges(&away), [0..100, 100..200, 200..300]);
+    }
+
+    #[test]
+    fn a_time_without_poses_is_no_part_of_a_stay() {
+        // A second at one place, four of which nothing is known, and a second at the same place.
+        let poses: Vec<TimedPose> =
+            (0..200).map(|idx| pose(idx * 10 + if idx < 100 { 0 } else { 4000 }, 0.0, 0.0)).collect();
+        assert_eq!(ranges(&poses), [0..100, 100..200]);
+        assert_eq!(longest_gap_ns(&poses, 50 * MS), 200 * MS);
+        // Of a robot that sends its pose once a second a second says nothing.
+        let seldom: Vec<TimedPose> = (0..20).map(|idx| pose(idx * 1000, 0.0, 0.0)).collect();
+        assert_eq!(longest_gap_ns(&seldom, 50 * MS), 4000 * MS);
+        assert_eq!(longest_gap_ns(&[], 50 * MS), 200 * MS);
     }
 
     #[test]

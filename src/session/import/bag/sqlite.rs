@@ -21,19 +21,22 @@ fn open(path: &Path) -> Result<Connection, BagError> {
 pub(super) fn topics(path: &Path) -> Result<Vec<FileTopic>, BagError> {
     let connection = open(path)?;
     let read = || -> rusqlite::Result<Vec<FileTopic>> {
-        let mut counts: HashMap<i64, u64> = HashMap::new();
-        let mut query = connection.prepare("SELECT topic_id, COUNT(*) FROM messages GROUP BY topic_id")?;
+        let mut counts: HashMap<i64, (u64, [i64; 2])> = HashMap::new();
+        let mut query = connection
+            .prepare("SELECT topic_id, COUNT(*), MIN(timestamp), MAX(timestamp) FROM messages GROUP BY topic_id")?;
         let mut rows = query.query([])?;
         while let Some(row) = rows.next()? {
-            counts.insert(row.get(0)?, u64::try_from(row.get::<_, i64>(1)?).unwrap_or_default());
+            let count = u64::try_from(row.get::<_, i64>(1)?).unwrap_or_default();
+            counts.insert(row.get(0)?, (count, [row.get(2)?, row.get(3)?]));
         }
         let mut query = connection.prepare("SELECT id, name, type, serialization_format FROM topics")?;
         let mut rows = query.query([])?;
         let mut topics = Vec::new();
         while let Some(row) = rows.next()? {
-            let num_messages = counts.get(&row.get(0)?).copied().unwrap_or_default();
+            let counted = counts.get(&row.get(0)?).copied();
+            let (num_messages, recorded_ns) = counted.map_or((0, None), |(count, times)| (count, Some(times)));
             let (name, type_name, encoding) = (row.get(1)?, row.get(2)?, row.get(3)?);
-            topics.push(FileTopic { name, type_name, encoding, num_messages });
+            topics.push(FileTopic { name, type_name, encoding, num_messages, recorded_ns });
         }
         Ok(topics)
     };

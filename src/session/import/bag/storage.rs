@@ -22,6 +22,8 @@ pub(super) struct FileTopic {
     /// How its messages are written; `cdr` is what we read.
     pub encoding: String,
     pub num_messages: u64,
+    /// When the first and the last were recorded, as far as the file tells without being read as a whole.
+    pub recorded_ns: Option<[i64; 2]>,
 }
 
 /// A message of a topic.

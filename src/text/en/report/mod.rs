@@ -2,12 +2,12 @@
 
 mod tables;
 
-use crate::calibrate::{Method, Mount};
+use crate::calibrate::{Method, Mount, Verdict};
 use crate::geometry::notation::AngleUnit;
 use crate::geometry::{AngleOrder, PoseConvention};
 use crate::session::Target;
 
-use super::{method_name, method_short_name};
+use super::{method_name, method_short_name, verdict_name};
 
 pub use tables::*;
 
@@ -68,9 +68,12 @@ pub fn headline_note(distance_mm: &str, is_stated: bool, within_95_mm: &str) -> 
 /// Name of a fact.
 pub const METHOD: &str = "Method";
 /// Name of a fact.
-pub const IMPROVEMENT: &str = "Against the published method";
+pub const COMPARED: &str = "Methods compared";
 /// Name of a fact.
 pub const SCALE: &str = "Scale of the verdict";
+/// What the scale is held against.
+pub const SCALE_NOTE: &str =
+    "The larger of σ of a workspace point and the left-out RMS counts; a warning or finding can lower the verdict.";
 /// Name of a fact.
 pub const NEXT_STEP: &str = "Next step";
 /// Heads the warnings.
@@ -82,7 +85,8 @@ pub fn method_and_id(method: Method) -> String {
     format!("{} ({})", method_name(method), method.id())
 }
 
-/// How a method's error compares with the baseline's.
+/// Two methods compared: always the largest arc (without sweeps the bundle) against the fixed point, or a plate's bundle against
+/// the published method, whichever of them is to be used.
 #[must_use]
 pub fn improvement_line(
     method: Method,
@@ -91,12 +95,23 @@ pub fn improvement_line(
     baseline: Method,
     baseline_error_mm: &str,
 ) -> String {
+    let error = if Method::PLATE.contains(&method) {
+        "left-out distance from the edges, RMS"
+    } else {
+        "largest coordinate off the first station, in sample"
+    };
     format!(
-        "{}: {} error {error_mm} mm, {percent} % against {} ({baseline_error_mm} mm)",
+        "{} against {}: {error_mm} mm against {baseline_error_mm} mm, {percent} % ({error})",
         method_name(method),
-        if Method::PLATE.contains(&method) { "left-out" } else { "maximum" },
         method_short_name(baseline),
     )
+}
+
+/// A verdict that something lowered.
+#[must_use]
+pub fn lowered(by_figures: Verdict, verdict: Verdict, code: &str, reason: &str) -> String {
+    let [from, to] = [by_figures, verdict].map(|verdict| verdict_name(verdict).to_lowercase());
+    format!("By its figures alone it would be {from}; “{code}” lowers it to {to}. {reason}")
 }
 
 /// Title of a table, and what its columns are.
@@ -132,6 +147,9 @@ pub const fn meaning(mount: Mount) -> &'static str {
 
 /// The sensor's frame in words.
 pub const SENSOR_FRAME: &str = "Sensor frame: the laser plane is y = 0, x runs across the line, z along the range axis, y completes a right-handed frame. Lengths are millimetres.";
+/// How many digits are printed.
+pub const DIGITS: &str =
+    "Figures end with the second digit of their σ, R and quaternion one digit later; result.json has all digits.";
 /// Name of the transform.
 #[must_use]
 pub const fn transform_name(mount: Mount) -> &'static str {
@@ -237,14 +255,16 @@ pub const NOTES: &str = "Notes of the session";
 pub const REMARKS: &str = "Remarks";
 /// A fact that the session does not hold.
 pub const NOT_STATED: &str = "not stated";
+/// Beside the radius of a ball whose centres the session holds.
+pub const RADIUS_NOT_USED: &str = "not used, as the readings are centres already";
 /// A noise that the session does not hold.
 pub const ESTIMATED: &str = "not stated; estimated from the data, see “Validation”";
 
-/// The robot's noise.
+/// The robot's noise; `is_estimated` where the report tells what the data show of it.
 #[must_use]
-pub fn robot_noise(position_mm: Option<f64>, orientation_deg: Option<f64>) -> String {
+pub fn robot_noise(position_mm: Option<f64>, orientation_deg: Option<f64>, is_estimated: bool) -> String {
     match (position_mm, orientation_deg) {
-        (None, None) => ESTIMATED.to_owned(),
+        (None, None) => if is_estimated { ESTIMATED } else { NOT_STATED }.to_owned(),
         (position, orientation) => {
             let part =
                 |value: Option<f64>, unit: &str| value.map_or_else(|| NOT_STATED.to_owned(), |v| format!("{v}{unit}"));
@@ -318,6 +338,15 @@ pub fn result_file(result: &str, tables: &str) -> String {
     format!("{result} (with covariances), and each table as CSV in {tables}/")
 }
 
+/// Of a file that is another by now.
+pub const CHANGED_SINCE: &str = "changed since it was read; the checksum is of what was read";
+/// Of a file that cannot be read any more.
+pub const GONE_SINCE: &str = "cannot be read any more; the checksum is of what was read";
+/// Of a session that no file holds as it is.
+pub const NOT_SAVED: &str = "not saved; the checksum is of the file that “Save” would write";
+/// Of a calibration that was given as figures.
+pub const PASTED: &str =
+    "a calibration that was pasted; the checksum is of its 16 figures, row by row, as JSON prints them";
 /// The report was made of a session that is in no file.
 pub const NO_FILE: &str = "The session was in no file when the report was made.";
 
@@ -329,7 +358,7 @@ pub const fn references(target: &Target) -> &'static [&'static str] {
             LIN_MU,
             "The fits of the whole curve and of all points at once, and their uncertainty, are Handeye's own: docs/methods.md, docs/uncertainty.md.",
         ],
-        Target::RightAnglePlate | Target::Point | Target::Workpiece => &[
+        Target::RightAnglePlate => &[
             CHEN,
             "The bundle of both edges and the uncertainty are Handeye's own: docs/plate.md, docs/uncertainty.md.",
         ],
@@ -337,6 +366,13 @@ pub const fn references(target: &Target) -> &'static [&'static str] {
             "Closed forms: Tsai & Lenz 1989; Park & Martin 1994; Horaud & Dornaika 1995; Daniilidis 1999; Andreff, Horaud & Espiau 2001; Li, Wang & Wu 2010; Shah 2013.",
             "The refined answer and its uncertainty are Handeye's own: docs/motion.md, docs/uncertainty.md.",
         ],
+        Target::Point => &[
+            CHEN,
+            "The fixed point of a tip is the fixed point of a ball's centre with the tip in its place (docs/methods.md); how a tip is found in a profile and the uncertainty are Handeye's own: docs/edges.md, docs/uncertainty.md.",
+        ],
+        Target::Workpiece => {
+            &[CHEN, "How planes, teeth and diameters are measured is Handeye's own: docs/workpiece.md."]
+        }
         Target::Rgbd { .. } => &[],
     }
 }

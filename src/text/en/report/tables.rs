@@ -11,8 +11,22 @@ pub const OVERVIEW: &str = "Errors of the methods";
 pub const MAXIMUM: &str = "maximum";
 /// Head of a column.
 pub const RMS: &str = "RMS";
+/// Group of columns: errors of the stations that the method was computed from.
+pub const IN_SAMPLE_GROUP: &str = "in sample / mm";
+/// Group of columns: errors of stations that it was not computed from.
+pub const LEFT_OUT_GROUP: &str = "left out / mm";
+
+/// Head of the column of the largest error in sample: the papers' maximum is a coordinate, that of a plate a distance.
+#[must_use]
+pub const fn maximum_in_sample(target: &Target) -> &'static str {
+    match target {
+        Target::RightAnglePlate => MAXIMUM,
+        _ => "max. axis",
+    }
+}
+
 /// Head of a column.
-pub const LEFT_OUT_RMS: &str = "left out";
+pub const RMS_3D: &str = "RMS 3D";
 /// Group of columns.
 pub const FROM_TRUTH: &str = "from the truth";
 /// Head of a column.
@@ -23,18 +37,19 @@ pub const ROTATION: &str = "rotation";
 /// What the columns of the errors mean.
 #[must_use]
 pub const fn errors_legend(target: &Target) -> [&'static str; 2] {
-    const LEFT_OUT: &str =
-        "left out: each station predicted by the others, RMS · σ point: 1 σ of a point in the workspace, 3D";
+    const LEFT_OUT: &str = "left out: each station against the calibration made without it, RMS 3D · σ point: 1 σ of a point in the workspace, 3D";
     let first = match target {
-        Target::RightAnglePlate => "max: largest distance of a point from its edge · RMS: of these distances",
+        Target::RightAnglePlate => {
+            "max: largest distance of a point from its edge, in sample · RMS: of these distances, in sample"
+        }
         Target::Point => {
-            "max: largest coordinate relative to the first station · RMS: scatter of the tip about its place, 3D"
+            "max: largest coordinate (one axis) off the first station's tip, in sample, as in the papers · RMS: of the distances (3D) of all tips from their mean, in sample"
         }
         Target::Pose { .. } => {
             "max: largest coordinate relative to the first station · RMS: scatter of the target's origin about its place, 3D"
         }
         Target::Ball { .. } | Target::Workpiece | Target::Rgbd { .. } => {
-            "max: largest coordinate relative to the first station · RMS: scatter of the ball about its place, 3D"
+            "max: largest coordinate (one axis) off the first station's ball, in sample, as in the papers · RMS: of the distances (3D) of all balls from their mean, in sample"
         }
     };
     [first, LEFT_OUT]
@@ -140,18 +155,23 @@ pub fn truth_line(point_mm: &str, rotation_deg: &str) -> String {
 }
 
 /// Name of a fact.
-pub const LEAVE_ONE_OUT: &str = "Each station predicted by the others";
+pub const LEAVE_ONE_OUT: &str = "Left out, predicted by others";
 
-/// Left-out errors.
+/// Distances of stations, left out or in sample.
 #[must_use]
-pub fn leave_one_out_line(rms_mm: &str, max_mm: &str) -> String {
-    format!("RMS {rms_mm} mm, maximum {max_mm} mm")
+pub fn distances_line(target: &Target, rms_mm: &str, max_mm: &str) -> String {
+    let from = match target {
+        Target::RightAnglePlate => "of the points from their edges",
+        Target::Point => "of the tips, 3D",
+        _ => "of the balls, 3D",
+    };
+    format!("RMS {rms_mm} mm, maximum {max_mm} mm (distances {from})")
 }
 
 /// There are too few stations for it.
 pub const NO_LEAVE_ONE_OUT: &str = "too few stations to leave one out";
 /// Name of a fact.
-pub const IN_SAMPLE: &str = "Scatter in sample";
+pub const IN_SAMPLE: &str = "In sample";
 /// Name of a fact.
 pub const ROTATION_SPAN: &str = "Largest rotation between two poses";
 
@@ -167,9 +187,15 @@ pub const fn stability_title(is_touched: bool) -> &'static str {
     }
 }
 
-/// What δ is.
-pub const STABILITY_NOTE: &str =
-    "3δ: three standard deviations of the measurements · 3D: root of the sum over the axes";
+/// What δ is, and over what.
+#[must_use]
+pub const fn stability_note(is_of_tip: bool) -> &'static str {
+    if is_of_tip {
+        "3δ: three standard deviations of the measurements · 3D: root of the sum of squares over the axes · a measurement: the tip as a capture shows it"
+    } else {
+        "3δ: three standard deviations of the measurements · 3D: root of the sum of squares over the axes · a measurement: the centre that all arcs of a station give together, whichever of them the method itself uses (“Errors of the methods” is over those)"
+    }
+}
 /// Head of a column.
 pub const CALIBRATION_COLUMN: &str = "calibration";
 /// Group of columns.
@@ -193,9 +219,18 @@ pub const THREE_DELTA_3D: &str = "3D";
 /// Group of columns.
 pub const DEVIATION: &str = "deviation / mm";
 /// Title of a table.
-pub const CROSS_TARGETS: &str = "Every calibration on every target, RMS and maximum of the errors";
-/// What the star means.
-pub const OWN_DATA: &str = "*: computed from these very data, so in sample";
+pub const CROSS_TARGETS: &str = "Every calibration on every target";
+/// What the errors on targets are, and what the star means.
+pub const CROSS_TARGETS_NOTE: &str = "RMS and maximum: of the distances (3D) of a ball's or tip's stations from their common place, of a plate's points from their edges · *: the calibration was computed from this target, so in sample";
+/// Head of a column.
+pub const DATA: &str = "data";
+/// The calibration was computed from these data, or from others.
+#[must_use]
+pub const fn data(is_own: bool) -> &'static str {
+    if is_own { "own" } else { "others" }
+}
+/// What that means.
+pub const DATA_NOTE: &str = "data: own where the calibration was computed from these very data, so in sample";
 /// Title of a table.
 pub const JOINT: &str = "All targets solved together";
 /// What its columns mean.
@@ -307,7 +342,7 @@ pub const PEAK: &str = "peak at";
 /// Head of a column.
 pub const OFF_NORMAL: &str = "off normal";
 /// What the columns mean.
-pub const STATIONS_NOTE: &str = "error: about the mean, in sample · left out: predicted by the others · studentised: residual in its σ · moves point: how far the workspace point moves without the station";
+pub const STATIONS_NOTE: &str = "error: distance (3D) from the mean, in sample · left out: distance (3D) from what the others predict · studentised: residual in its σ · moves point: how far the workspace point moves without the station";
 /// The same for a plate.
 pub const EDGE_POINTS_NOTE: &str =
     "error: distance from its edge, in sample · left out: from the edges found without the station";
