@@ -1,6 +1,5 @@
 //! The odometry as a whole: alignment against a plain reference, both estimators in the simulated room, and frames in which
 //! nothing can be tracked.
-#![expect(clippy::expect_used, reason = "a test that cannot set itself up must fail")]
 
 use handeye::geometry::stats::SplitMix;
 use handeye::geometry::{Transform, Vec3, so3};

@@ -1,5 +1,4 @@
 //! A thousand frames take no more memory than a few.
-#![expect(clippy::expect_used, reason = "a test that cannot set itself up must fail")]
 
 use handeye::odometry::{Odometry, OdometryOptions, RgbdFrame, Tracking};
 use handeye::simulate::room::{Carrier, RoomOptions, RoomRecording, kinect};

@@ -113,8 +113,8 @@ impl<const R: usize, const U: usize> Components<R, U> {
             .iter()
             .map(|point| {
                 let weight = point.covariance(log_factors).try_inverse().unwrap_or_else(SMatrix::zeros);
-                let weighted = point.by_unknowns.transpose() * weight;
-                hessian += weighted * point.by_unknowns;
+                let weighted = product(&point.by_unknowns.transpose(), &weight);
+                hessian += product(&weighted, &point.by_unknowns);
                 pull += weighted * point.residual;
                 weight
             })
@@ -125,16 +125,19 @@ impl<const R: usize, const U: usize> Components<R, U> {
         let mut losses = [SMatrix::<f64, U, U>::zeros(); NUM_COMPONENTS];
         for (point, weight) in self.points.iter().zip(&weights) {
             let left = weight * (point.residual - point.by_unknowns * fitted);
-            let by_unknowns = weight * point.by_unknowns;
-            let spread = by_unknowns * inverse * by_unknowns.transpose();
+            let by_unknowns = product(weight, &point.by_unknowns);
+            let spread = product(&product(&by_unknowns, &inverse), &by_unknowns.transpose());
             let parts: [SMatrix<f64, R, R>; NUM_COMPONENTS] =
                 std::array::from_fn(|idx| point.open[idx] * log_factors[idx].exp());
+            let weighted = parts.each_ref().map(|part| product(weight, part));
+            let spread_parts = parts.each_ref().map(|part| product(&spread, part));
             for (row, part) in parts.iter().enumerate() {
-                score[row] += 0.5 * (left.dot(&(part * left)) - (part * (weight - spread)).trace());
-                losses[row] += by_unknowns.transpose() * part * by_unknowns;
-                for (column, other) in parts.iter().enumerate() {
-                    let own = (weight * part * weight * other).trace();
-                    let shared = (part * weight * other * spread).trace();
+                score[row] += 0.5 * (left.dot(&(part * left)) - (weighted[row].trace() - spread_parts[row].trace()));
+                losses[row] += product(&by_unknowns.transpose(), &product(part, &by_unknowns));
+                for column in 0..NUM_COMPONENTS {
+                    // Traces of W B W B' and W B (V⁻¹ J H⁻¹ Jᵀ V⁻¹) B'.
+                    let own = trace_of_product(&weighted[row], &weighted[column]);
+                    let shared = trace_of_product(&weighted[column], &spread_parts[row]);
                     information[(row, column)] += 0.5 * own - shared;
                 }
             }
@@ -160,6 +163,27 @@ impl<const R: usize, const U: usize> Components<R, U> {
         let information = (Matrix3::from_diagonal(&is_open) - is_open * is_open.transpose() / is_open.sum()) * weight;
         (-information * log_factors, information)
     }
+}
+
+/// A product of small matrices: nalgebra packs those of more than five rows as if they were large ones.
+fn product<const R: usize, const K: usize, const C: usize>(
+    left: &SMatrix<f64, R, K>,
+    right: &SMatrix<f64, K, C>,
+) -> SMatrix<f64, R, C> {
+    let mut product = SMatrix::<f64, R, C>::zeros();
+    for column in 0..C {
+        for middle in 0..K {
+            let factor = right[(middle, column)];
+            for row in 0..R {
+                product[(row, column)] += left[(row, middle)] * factor;
+            }
+        }
+    }
+    product
+}
+
+fn trace_of_product<const R: usize>(left: &SMatrix<f64, R, R>, right: &SMatrix<f64, R, R>) -> f64 {
+    left.dot(&right.transpose())
 }
 
 /// The inverse over the components that have information; zero elsewhere.

@@ -42,4 +42,4 @@ pub use solution::{
     SweepPoint, Uncertainty,
 };
 pub use verdict::{Verdict, VerdictReason};
-pub use warning::{Inverted, PoseFault, Warning};
+pub use warning::{PoseFault, Warning};

@@ -17,17 +17,6 @@ pub enum PoseFault {
     Both,
 }
 
-/// Which of the two lists of poses is given the wrong way round.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Inverted {
-    /// The robot's: they are `flange_from_base`, or the sensor is mounted the other way (on the flange, or fixed).
-    Robot,
-    /// The target's: they are `target_from_sensor`.
-    Target,
-    /// Both.
-    Both,
-}
-
 /// Something about a result that the user should know. Sentence and remedy come from [`crate::text`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Warning {
@@ -167,11 +156,10 @@ pub enum Warning {
         /// What would explain it.
         fault: PoseFault,
     },
-    /// All poses fit far better with one of the two lists inverted.
+    /// All poses fit far better with one of the two lists inverted. Which one cannot be told: with both inverted they fit as
+    /// well, and sensor and target change places.
     StreamInverted {
-        /// Which.
-        inverted: Inverted,
-        /// Residual as given over residual with it inverted.
+        /// Residual as given over residual with one inverted.
         ratio: f64,
     },
     /// The target's poses are too far or too near by one factor: a board or marker of another size than was stated.

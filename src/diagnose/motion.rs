@@ -2,7 +2,7 @@
 //! method itself says.
 
 use crate::calibrate::validation::validate;
-use crate::calibrate::{Inverted, MethodResult, Warning, best_available};
+use crate::calibrate::{MethodResult, Warning, best_available};
 use crate::watch::{Cancelled, Watch};
 
 use super::finding::{Finding, Severity};
@@ -26,14 +26,10 @@ pub(super) fn examine(results: &[MethodResult], watch: &mut dyn Watch) -> Result
             findings.extend(solution.warnings.iter().map(|warning| {
                 let finding = of_warning(warning);
                 match warning {
-                    Warning::StreamInverted { inverted, ratio } => Finding {
+                    Warning::StreamInverted { ratio } => Finding {
                         severity: Severity::Wrong,
                         explains: *ratio,
-                        remedy: match inverted {
-                            Inverted::Robot => Some(Remedy::ToOtherMount),
-                            Inverted::Target => Some(Remedy::InvertTargets),
-                            Inverted::Both => None,
-                        },
+                        remedy: Some(Remedy::ToOtherMount),
                         ..finding
                     },
                     Warning::PoseRejected { label, .. } => Finding {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::calibrate::{Edge, Mount, SideChoice};
-use crate::geometry::{Profile, Sensor, Target as TargetFrame, Transform};
+use crate::geometry::{Profile, Transform};
 use crate::session::{Reading, Session, Target};
 
 use super::convention::PoseReading;
@@ -36,8 +36,6 @@ pub enum Remedy {
     MirrorProfiles(Axis),
     /// The sensor is mounted the other way: on the flange, or fixed beside the robot.
     ToOtherMount,
-    /// The poses of the target, which are `target_from_sensor`, the right way round.
-    InvertTargets,
     /// The places of the target times this factor.
     ScaleTargets(f64),
     /// The stations from the first on report this frame; their poses become those of the flange again.
@@ -104,11 +102,12 @@ pub fn apply(session: &Session, remedy: &Remedy) -> Session {
                 Mount::Fixed => Mount::OnFlange,
             };
         }
-        Remedy::InvertTargets => {
-            change_targets(&mut mended, |seen| Transform::from_rigid(*seen.inverse().rigid()));
-        }
         Remedy::ScaleTargets(factor) => {
-            change_targets(&mut mended, |seen| Transform::from_parts(seen.translation_mm() * *factor, seen.rotation()));
+            for capture in mended.stations.iter_mut().flat_map(|station| &mut station.captures) {
+                if let Reading::Pose(seen) = &mut capture.reading {
+                    *seen = Transform::from_parts(seen.translation_mm() * *factor, seen.rotation());
+                }
+            }
         }
         Remedy::RemoveTool { from_station_idx, flange_from_tool } => {
             let tool_from_flange = flange_from_tool.inverse();
@@ -120,18 +119,6 @@ pub fn apply(session: &Session, remedy: &Remedy) -> Session {
         }
     }
     mended
-}
-
-/// Maps every pose of the target.
-fn change_targets(
-    session: &mut Session,
-    map: impl Fn(&Transform<Sensor, TargetFrame>) -> Transform<Sensor, TargetFrame>,
-) {
-    for capture in session.stations.iter_mut().flat_map(|station| &mut station.captures) {
-        if let Reading::Pose(seen) = &mut capture.reading {
-            *seen = map(seen);
-        }
-    }
 }
 
 /// Maps x and z of every reading; one that would not be a profile any more stays as it was.

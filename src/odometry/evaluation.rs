@@ -152,9 +152,13 @@ mod tests {
     fn poses_of_other_moments_are_left_out() {
         let truth = spiral();
         let mut later = spiral();
-        later.iter_mut().for_each(|pose| pose.time_s += 0.009);
+        for pose in &mut later {
+            pose.time_s += 0.009;
+        }
         assert_eq!(evaluate(&truth, &later).map(|found| found.num_poses), Some(60));
-        later.iter_mut().for_each(|pose| pose.time_s += 0.03);
+        for pose in &mut later {
+            pose.time_s += 0.03;
+        }
         assert_eq!(evaluate(&truth, &later), None);
         assert_eq!(evaluate(&truth, &truth[..2]), None);
         assert_eq!(evaluate(&truth, &truth[10..15]).map(|found| found.num_poses), Some(5));

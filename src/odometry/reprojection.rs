@@ -285,7 +285,9 @@ mod tests {
                 let point_mm = camera().point_at([within(20.0, 620.0), within(20.0, 460.0)], within(800.0, 4000.0));
                 let moved = motion.rotation * point_mm + motion.translation.vector;
                 let mut pixel = camera().pixel_of(&moved).expect("before the camera");
-                pixel.iter_mut().for_each(|value| *value += within(-noise_px, noise_px));
+                for value in &mut pixel {
+                    *value += within(-noise_px, noise_px);
+                }
                 if idx % wrong_every == 1 {
                     pixel = [within(0.0, 640.0), within(0.0, 480.0)];
                 }

@@ -30,6 +30,7 @@ pub const ALL: &[Sample] = samples![
     "one-bad-pose.json",
     "plate.json",
     "tip.json",
+    "poses.json",
     "workpiece.json",
     "three-targets.json",
 ];

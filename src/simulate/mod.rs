@@ -4,6 +4,7 @@ mod fault;
 mod options;
 mod parts;
 mod path;
+pub mod poses;
 pub mod room;
 
 use std::collections::HashSet;

@@ -1,5 +1,7 @@
 //! The target's poses that the stations hold.
 
+use std::collections::HashMap;
+
 use nalgebra::{Quaternion, UnitQuaternion, Vector4};
 
 use crate::calibrate::rotation_start::PoseGeometry;
@@ -34,6 +36,7 @@ pub(super) struct Measured<'a> {
 /// [`SolveError::TooFewStations`], and those of [`PoseGeometry::new`].
 pub(super) fn measured(problem: &MotionProblem) -> Result<(Vec<Measured<'_>>, PoseGeometry), SolveError> {
     let mut all: Vec<Measured<'_>> = Vec::new();
+    let mut same_pose: HashMap<[u64; 7], Vec<usize>> = HashMap::new();
     let mut num_stations = 0;
     for station in &problem.stations {
         let mut seen: Vec<(usize, Rigid, Vec<Rigid>)> = Vec::new();
@@ -55,11 +58,9 @@ pub(super) fn measured(problem: &MotionProblem) -> Result<(Vec<Measured<'_>>, Po
                 information: Information::by_lever(LEVER_MM),
             };
             // The same pair entered twice tells nothing new.
-            let is_copy = |other: &Measured<'_>| {
-                other.pose.base_from_flange == pose.base_from_flange
-                    && other.pose.sensor_from_target == pose.sensor_from_target
-            };
-            if !all.iter().any(is_copy) {
+            let taken = same_pose.entry(bits(&base_from_flange)).or_default();
+            if !taken.iter().any(|place| all[*place].pose.is_copy_of(&pose)) {
+                taken.push(all.len());
                 #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 captures")]
                 let num_readings = targets.len() as f64;
                 all.push(Measured { station, capture_idx, pose, num_readings, num_at_pose: 1.0 });
@@ -67,12 +68,12 @@ pub(super) fn measured(problem: &MotionProblem) -> Result<(Vec<Measured<'_>>, Po
         }
         num_stations += usize::from(all.len() > before);
     }
-    let poses: Vec<Rigid> = all.iter().map(|measured| measured.pose.base_from_flange).collect();
-    for measured in &mut all {
-        let same = poses.iter().filter(|pose| **pose == measured.pose.base_from_flange).count();
+    for places in same_pose.into_values().filter(|places| places.len() > 1) {
         #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 poses")]
-        let num_at_pose = same as f64;
-        measured.num_at_pose = num_at_pose;
+        let num_at_pose = places.len() as f64;
+        for place in places {
+            all[place].num_at_pose = num_at_pose;
+        }
     }
     if all.len() < MIN_POSES {
         return Err(SolveError::TooFewStations {
@@ -81,8 +82,15 @@ pub(super) fn measured(problem: &MotionProblem) -> Result<(Vec<Measured<'_>>, Po
             refusal: first_refusal(&problem.stations),
         });
     }
+    let poses: Vec<Rigid> = all.iter().map(|measured| measured.pose.base_from_flange).collect();
     let geometry = PoseGeometry::new(&poses)?;
     Ok((all, geometry))
+}
+
+/// A pose as a key: what was reported twice is the same to the bit.
+fn bits(pose: &Rigid) -> [u64; 7] {
+    let (place, turn) = (pose.translation.vector, pose.rotation.coords);
+    [place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w].map(f64::to_bits)
 }
 
 /// The mean of poses that differ by noise.

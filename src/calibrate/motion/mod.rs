@@ -51,8 +51,8 @@ pub fn solve(problem: &MotionProblem) -> Result<Solution, SolveError> {
     if let Some((ratio, distance_mm)) = start.other {
         warnings.push(Warning::OtherMinimum { ratio, distance_mm });
     }
-    if let Some((inverted, ratio)) = start::inverted(&poses, start::typical_mm(&start.state, &poses)) {
-        warnings.push(Warning::StreamInverted { inverted, ratio });
+    if let Some(ratio) = start::inverted(&poses, start::typical_mm(&start.state, &poses)) {
+        warnings.push(Warning::StreamInverted { ratio });
     }
     let agreed = settle_on_agreeing(measured, start.state, MotionNoise::of(problem))?;
     Found { problem, geometry, answers: start.answers, agreed, warnings }.into_solution()

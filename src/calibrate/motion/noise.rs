@@ -20,6 +20,8 @@ const USUAL_ROBOT: [f64; 2] = [0.05, 3e-4];
 const USUAL_TARGET: [f64; 2] = [0.3, 2e-3];
 /// No robot and no camera is better than this: it keeps exact data weighable, mm and rad.
 const LEAST_STD: [f64; 2] = [1e-4, 1e-7];
+/// From so many poses the noise is found; of more, as many that are spread over all.
+const MOST_FOR_NOISE: usize = 100;
 /// Step (of a variance's logarithm) over which differences are taken.
 const DIFFERENCE: f64 = 1e-3;
 
@@ -96,7 +98,8 @@ impl MotionNoise {
         }
     }
 
-    const fn is_any_open(&self) -> bool {
+    /// Whether any of it is found from the residuals.
+    pub const fn is_any_open(&self) -> bool {
         self.robot_position.is_open
             || self.robot_orientation.is_open
             || self.target_translation.is_open
@@ -147,7 +150,9 @@ impl MotionNoise {
             return Ok(());
         };
         if self.is_any_open() {
-            let models = measured.iter().map(|measured| self.model_of(measured, state)).collect();
+            // Six hundred errors tell a noise to a few per cent; more poses would cost more than the calibration itself.
+            let every = measured.len().div_ceil(MOST_FOR_NOISE);
+            let models = measured.iter().step_by(every).map(|measured| self.model_of(measured, state)).collect();
             let Found { log_factors, covariance } = Components::new(models).fit(self.log_factors)?;
             (self.log_factors, self.covariance) = (log_factors, covariance);
         } else {

@@ -29,6 +29,14 @@ pub struct PosePair {
     pub information: Information,
 }
 
+impl PosePair {
+    /// Whether both poses are the same.
+    #[must_use]
+    pub fn is_copy_of(&self, other: &Self) -> bool {
+        self.base_from_flange == other.base_from_flange && self.sensor_from_target == other.sensor_from_target
+    }
+}
+
 /// What a pose's errors are weighed by, in blocks of three; it is symmetric.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Information {

@@ -15,7 +15,7 @@ const MAX_PASSES: usize = 20;
 /// Movements below this (rad, mm/100) are the end: a thousandth of what any robot repeats.
 const SETTLED: f64 = 1e-9;
 /// The noise is kept from this pass on, so that the passes can settle.
-const LAST_NOISE_ESTIMATE: usize = 5;
+const LAST_NOISE_ESTIMATE: usize = 3;
 /// From a closed form hardly any damping is needed.
 const FIRST_DAMPING: f64 = 1e-12;
 

@@ -30,11 +30,11 @@ pub(super) struct Agreed<'a> {
 
 /// # Errors
 /// As [`settle`].
-pub(super) fn settle_on_agreeing<'a>(
-    measured: Vec<Measured<'a>>,
+pub(super) fn settle_on_agreeing(
+    measured: Vec<Measured<'_>>,
     start: MotionState,
     noise: MotionNoise,
-) -> Result<Agreed<'a>, SolveError> {
+) -> Result<Agreed<'_>, SolveError> {
     let poses: Vec<PosePair> = measured.iter().map(|measured| measured.pose).collect();
     if measured.len() < MIN_TO_REJECT {
         return Ok(Agreed { settled: settle(&measured, start, noise)?, used: measured, rejected: Vec::new() });
@@ -53,7 +53,7 @@ pub(super) fn settle_on_agreeing<'a>(
         start = settled.minimum.unknowns;
         let weighed = settled.noise.weighed(&measured, &start);
         let squares: Vec<f64> = weighed.iter().map(|pose| pose.information.square(&start.errors(pose))).collect();
-        let limit = limit(used.len(), stats::max(squares.iter().copied()));
+        let limit = limit(used.len(), settled.noise.is_any_open(), stats::max(squares.iter().copied()));
         let now: Vec<bool> = squares.iter().map(|square| *square <= limit).collect();
         if now == is_used {
             let rejected =
@@ -73,8 +73,8 @@ fn chosen<'a>(measured: &[Measured<'a>], is_used: &[bool]) -> Vec<Measured<'a>> 
 }
 
 /// The square from which on a pose is wrong; `most` is the largest there is.
-fn limit(num_used: usize, most: f64) -> f64 {
-    if most <= NEVER_BELOW {
+fn limit(num_used: usize, is_noise_found: bool, most: f64) -> f64 {
+    if most <= NEVER_BELOW || !is_noise_found {
         return NEVER_BELOW;
     }
     #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 poses")]
@@ -120,7 +120,6 @@ fn mirrored_tilt(seen: &Rigid) -> Rigid {
     let half_turn = exp(sight * std::f64::consts::PI);
     // The mirrored normal, with the smallest turn that leads there.
     let mirrored = half_turn * normal;
-    let mirrored = if mirrored.dot(&sight) * normal.dot(&sight) < 0.0 { -mirrored } else { mirrored };
     let turn = nalgebra::UnitQuaternion::rotation_between(&normal, &mirrored).unwrap_or(half_turn);
     Rigid::from_parts(seen.translation, turn * seen.rotation)
 }

@@ -3,8 +3,8 @@
 
 use nalgebra::UnitQuaternion;
 
+use crate::calibrate::SolveError;
 use crate::calibrate::rotation_start::octahedral_rotations;
-use crate::calibrate::{Inverted, SolveError};
 use crate::geometry::Rigid;
 use crate::geometry::stats::{self, SplitMix};
 
@@ -128,27 +128,15 @@ fn from_samples(poses: &[PosePair]) -> Option<(MotionState, f64)> {
 }
 
 /// Whether the poses fit far better with one of the lists inverted: residual as given over residual with it inverted.
-pub(super) fn inverted(poses: &[PosePair], as_given_mm: f64) -> Option<(Inverted, f64)> {
+///
+/// A X B = Z is the same as B⁻¹ X⁻¹ A⁻¹ = Z⁻¹, that is A⁻¹ Z B⁻¹ = X: inverting either list mends what inverting the other
+/// does, so one of them is tried.
+pub(super) fn inverted(poses: &[PosePair], as_given_mm: f64) -> Option<f64> {
     /// Far above what noise or a wrong pose does.
     const CLEARLY: f64 = 10.0;
-    let ratios = [(Inverted::Robot, true, false), (Inverted::Target, false, true), (Inverted::Both, true, true)].map(
-        |(inverted, robot, target)| {
-            let poses: Vec<PosePair> = poses
-                .iter()
-                .map(|pose| PosePair {
-                    base_from_flange: if robot { pose.base_from_flange.inverse() } else { pose.base_from_flange },
-                    sensor_from_target: if target {
-                        pose.sensor_from_target.inverse()
-                    } else {
-                        pose.sensor_from_target
-                    },
-                    ..*pose
-                })
-                .collect();
-            let found = ClosedForm::Park.solve(&poses, &chosen(&poses));
-            let fits_mm = found.map(|sensor| typical_mm(&MotionState::with_mean_target(sensor, &poses), &poses));
-            (inverted, fits_mm.map_or(0.0, |fits_mm| as_given_mm / fits_mm))
-        },
-    );
-    ratios.into_iter().filter(|(_, ratio)| *ratio > CLEARLY).max_by(|a, b| a.1.total_cmp(&b.1))
+    let poses: Vec<PosePair> =
+        poses.iter().map(|pose| PosePair { base_from_flange: pose.base_from_flange.inverse(), ..*pose }).collect();
+    let sensor = ClosedForm::Park.solve(&poses, &chosen(&poses))?;
+    let ratio = as_given_mm / typical_mm(&MotionState::with_mean_target(sensor, &poses), &poses);
+    (ratio > CLEARLY).then_some(ratio)
 }

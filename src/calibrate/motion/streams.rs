@@ -319,55 +319,16 @@ impl Streams<'_> {
             translation_std_factor: noise.translation_factor.sqrt(),
         };
         let mut warnings = Vec::new();
-        if let Some((inverted, ratio)) = start::inverted(&all, start::typical_mm(&start.state, &all)) {
-            warnings.push(Warning::StreamInverted { inverted, ratio });
+        if let Some(ratio) = start::inverted(&all, start::typical_mm(&start.state, &all)) {
+            warnings.push(Warning::StreamInverted { ratio });
         }
         warnings.extend(rotation_warnings(span, &PoseGeometry::new(&of_flange)?));
         if !converged {
             warnings.push(Warning::NotConverged { num_iterations });
         }
-        let motion_poses: Vec<MotionPose> = all
-            .iter()
-            .zip(&places)
-            .map(|(pair, place)| {
-                let errors = state.errors(pair);
-                let base_from_sensor = errors.sensor_from_base.transpose();
-                MotionPose {
-                    station: pair.station,
-                    station_idx: *place,
-                    capture_idx: 0,
-                    label: (place + 1).to_string(),
-                    off_mm: base_from_sensor * errors.translation,
-                    off_rad: base_from_sensor * errors.rotation,
-                    normalised: match pair.station {
-                        0 => 0.0,
-                        step => (squares[step - 1].0 / 6.0).sqrt(),
-                    },
-                }
-            })
-            .collect();
+        let motion_poses = wandering(&state, &all, &places, &squares);
         let target = state.base_from_target.translation.vector;
-        let stations = motion_poses
-            .iter()
-            .zip(&all)
-            .map(|(pose, pair)| {
-                let in_sensor = pair.sensor_from_target.translation.vector;
-                StationSolution {
-                    station_idx: pose.station_idx,
-                    label: pose.label.clone(),
-                    side: if in_sensor.y < 0.0 { Side::Minus } else { Side::Plus },
-                    side_cost_ratio: None,
-                    target_in_sensor_mm: in_sensor,
-                    target_in_sensor_std_mm: None,
-                    target_in_base_mm: target + pose.off_mm,
-                    error_from_first_mm: pose.off_mm - motion_poses[0].off_mm,
-                    // The target's place is the mean of all.
-                    error_from_mean_mm: pose.off_mm,
-                    leave_one_out_mm: None,
-                    sweep: None,
-                }
-            })
-            .collect();
+        let stations = stations_of(&motion_poses, &all, target);
         let step_std = |idx: usize| stats::rms(poses[1..].iter().map(|pose| noise_std(pose, &noise, idx)));
         Ok(Solution {
             method: Method::Motion,
@@ -412,6 +373,59 @@ impl Streams<'_> {
             }),
         })
     }
+}
+
+/// What every pose says of the world's place: it wanders by the camera's drift.
+fn wandering(
+    state: &MotionState,
+    all: &[PosePair],
+    places: &[usize],
+    squares: &[(f64, Vector6<f64>)],
+) -> Vec<MotionPose> {
+    all.iter()
+        .zip(places)
+        .map(|(pair, place)| {
+            let errors = state.errors(pair);
+            let base_from_sensor = errors.sensor_from_base.transpose();
+            MotionPose {
+                station: pair.station,
+                station_idx: *place,
+                capture_idx: 0,
+                label: (place + 1).to_string(),
+                off_mm: base_from_sensor * errors.translation,
+                off_rad: base_from_sensor * errors.rotation,
+                normalised: match pair.station {
+                    0 => 0.0,
+                    step => (squares[step - 1].0 / 6.0).sqrt(),
+                },
+            }
+        })
+        .collect()
+}
+
+/// One entry a pose.
+fn stations_of(motion_poses: &[MotionPose], all: &[PosePair], target: Vec3) -> Vec<StationSolution> {
+    motion_poses
+        .iter()
+        .zip(all)
+        .map(|(pose, pair)| {
+            let in_sensor = pair.sensor_from_target.translation.vector;
+            StationSolution {
+                station_idx: pose.station_idx,
+                label: pose.label.clone(),
+                side: if in_sensor.y < 0.0 { Side::Minus } else { Side::Plus },
+                side_cost_ratio: None,
+                target_in_sensor_mm: in_sensor,
+                target_in_sensor_std_mm: None,
+                target_in_base_mm: target + pose.off_mm,
+                error_from_first_mm: pose.off_mm - motion_poses[0].off_mm,
+                // The target's place is the mean of all.
+                error_from_mean_mm: pose.off_mm,
+                leave_one_out_mm: None,
+                sweep: None,
+            }
+        })
+        .collect()
 }
 
 /// The square of a step's error by its own noise alone: what a lost step exceeds by far.

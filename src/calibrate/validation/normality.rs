@@ -83,7 +83,7 @@ fn whitened_errors(reduced: &MotionReduced) -> Vec<f64> {
         let factor = pose.information.matrix().cholesky()?;
         Some(factor.l().transpose() * reduced.state.errors(pose).vector())
     });
-    whitened.flat_map(|errors| <[f64; 6]>::from(errors)).collect()
+    whitened.flat_map(<[f64; 6]>::from).collect()
 }
 
 /// The likeliest shift that all captures of a station share.

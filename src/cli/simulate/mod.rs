@@ -1,5 +1,6 @@
 //! `handeye simulate`: writes a simulated session with its truth.
 
+mod pose;
 mod room;
 
 use std::path::PathBuf;
@@ -15,6 +16,7 @@ use crate::simulate::{Dirt, Fault, RoughMounting, SimulationOptions, SimulationT
 
 use super::{EXIT_WRONG_INPUT, fail};
 
+pub use pose::PoseArgs;
 pub use room::{FaultArg, RoomArgs};
 
 /// What is measured.
@@ -29,6 +31,8 @@ pub enum TargetArg {
     Point,
     /// A part that is scanned to see what a calibration is worth; --part says which.
     Workpiece,
+    /// A board whose whole pose a camera sees.
+    Pose,
     /// A room, seen by an RGB-D camera: its images go into a folder beside the session file.
     Room,
 }
@@ -40,6 +44,7 @@ impl TargetArg {
             Self::Plate => "--target plate",
             Self::Point => "--target point",
             Self::Workpiece => "--target workpiece",
+            Self::Pose => "--target pose",
             Self::Room => "--target room",
         }
     }
@@ -224,6 +229,9 @@ pub struct SimulateArgs {
     /// The session's notes.
     #[arg(long)]
     pub notes: Option<String>,
+    /// What a board is seen with.
+    #[command(flatten)]
+    pub pose: PoseArgs,
     /// What a room is recorded with.
     #[command(flatten)]
     pub room: RoomArgs,
@@ -295,7 +303,7 @@ pub fn run(args: &SimulateArgs) -> ExitCode {
 /// # Errors
 /// In one line.
 fn write(args: &SimulateArgs) -> Result<(), String> {
-    if target_of(args).is_none() {
+    if args.target == TargetArg::Room {
         return room::write(args);
     }
     let session = simulated_session(args).map_err(|refusal| refusal.to_string())?;
@@ -309,6 +317,7 @@ fn write(args: &SimulateArgs) -> Result<(), String> {
 pub fn simulated_session(args: &SimulateArgs) -> Result<Session, SimulateRefusal> {
     match target_of(args) {
         Some(target) => Ok(named(simulate(&options(args, target)?), args)),
+        None if args.target == TargetArg::Pose => pose::session(args),
         None => Ok(room::session(args, &room::recording(args)?)),
     }
 }
@@ -323,14 +332,14 @@ fn named(mut session: Session, args: &SimulateArgs) -> Session {
     session
 }
 
-/// What has stations; `None` for a room.
+/// What profiles are taken of; `None` for a board and a room, which a camera sees.
 fn target_of(args: &SimulateArgs) -> Option<SimulationTarget> {
     match args.target {
         TargetArg::Ball => Some(SimulationTarget::Ball),
         TargetArg::Plate => Some(SimulationTarget::Part(PartKind::Plate)),
         TargetArg::Point => Some(SimulationTarget::Part(PartKind::Pin)),
         TargetArg::Workpiece => Some(SimulationTarget::Part(args.part.unwrap_or_default().kind())),
-        TargetArg::Room => None,
+        TargetArg::Pose | TargetArg::Room => None,
     }
 }
 
@@ -405,6 +414,9 @@ fn refuse_without_effect(
     let own = args.target.as_argument();
     if let Some(option) = args.room.first_given() {
         return Err(SimulateRefusal::NoEffect { option, found: own, expected: "--target room" });
+    }
+    if let Some(option) = args.pose.first_given() {
+        return Err(SimulateRefusal::NoEffect { option, found: own, expected: "--target pose" });
     }
     let reduced = "--reduced";
     [
@@ -593,6 +605,23 @@ mod tests {
     }
 
     #[test]
+    fn a_board_takes_no_arguments_of_other_targets() {
+        let session =
+            |arguments: &str| simulated_session(&parsed(&format!("--target pose {arguments}")).expect("well formed"));
+        for (arguments, fragment) in [
+            ("--steps 5", "--steps: found it with --target pose, where it has no effect"),
+            ("--frames 9", "expected --target room or no --frames"),
+            ("--stations 5 --bad-pose 6", "expected 1 to 5"),
+        ] {
+            let refusal = session(arguments).expect_err(arguments).to_string();
+            assert!(refusal.contains(fragment), "{arguments}: {refusal}");
+        }
+        let session = session("--stations 4 --mount fixed --target-std-mm 0.3").expect("valid");
+        assert_eq!((session.stations.len(), session.mount), (4, Mount::Fixed));
+        assert!(session.target.is_pose());
+    }
+
+    #[test]
     fn the_session_of_a_room_names_the_folder_beside_it() {
         let args = parsed("--target room --on-robot --name arm").expect("well formed");
         let session = simulated_session(&args).expect("valid");
@@ -620,6 +649,7 @@ mod tests {
             ("--section-offset-mm 15", "expected less than the radius of 15 mm"),
             ("--step-mm 16", "expected at most the radius of 15 mm"),
             ("--stations 5 --bad-pose 6", "expected 1 to 5"),
+            ("--target-std-mm 1", "--target-std-mm: found it with --target ball, where it has no effect"),
             ("--size 320x240", "--size: found it with --target ball, where it has no effect"),
             ("--target plate --frame-fault dark:3", "expected --target room or no --frame-fault"),
         ] {

@@ -16,6 +16,7 @@ pub struct FaultArg(RoomFault, Range<usize>);
 /// Arguments of `handeye simulate --target room`.
 #[derive(Clone, Debug, PartialEq, clap::Args)]
 #[command(next_help_heading = "Options of --target room")]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub struct RoomArgs {
     /// Number of frames; 120 if not given.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
@@ -132,6 +133,7 @@ pub(super) fn recording(args: &SimulateArgs) -> Result<RoomRecording, SimulateRe
 
 /// What is asked for and belongs to other targets is a mistake somewhere else.
 fn refuse_without_effect(args: &SimulateArgs) -> Result<(), SimulateRefusal> {
+    let of_pose = args.pose.first_given();
     let (of_workpiece, of_ball, of_stations) = ("--target workpiece", "--target ball", "a target with stations");
     [
         ("--part", args.part.is_some(), of_workpiece),
@@ -153,6 +155,7 @@ fn refuse_without_effect(args: &SimulateArgs) -> Result<(), SimulateRefusal> {
         ("--bad-pose", args.bad_pose.is_some(), of_stations),
         ("--fault", args.fault.is_some(), of_ball),
         ("--decimals", args.decimals.is_some(), of_stations),
+        (of_pose.unwrap_or_default(), of_pose.is_some(), "--target pose"),
     ]
     .into_iter()
     .find(|(_, is_given, _)| *is_given)

@@ -255,7 +255,7 @@ pub(super) fn units(cells: &[&str], roles: &[Option<Role>], said: &mut Said) {
             Some(Role::Position(_)) => said.length_unit = said.length_unit.or_else(|| length_unit(&unit)),
             Some(Role::Point(_)) => said.point_unit = said.point_unit.or_else(|| length_unit(&unit)),
             Some(Role::Target(0..3)) => {
-                said.target.length_unit = said.target.length_unit.or_else(|| length_unit(&unit))
+                said.target.length_unit = said.target.length_unit.or_else(|| length_unit(&unit));
             }
             Some(Role::Orientation(_)) => said.angle_unit = said.angle_unit.or_else(|| angle_unit(&unit)),
             _ => {}

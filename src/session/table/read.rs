@@ -376,7 +376,7 @@ fn read_point(read: &mut ReadCells, place: Place, capture: &Capture, cells: &BTr
     }
     let value = match (coordinates, &capture.reading) {
         _ if !unreadable.is_empty() => Err(CellProblem::OthersUnreadable),
-        ([None, None, None], reading) if matches!(reading, Reading::Profile(_)) => return,
+        ([None, None, None], Reading::Profile(_)) => return,
         (_, Reading::Profile(profile)) if has_profile(&capture.reading) => {
             Err(CellProblem::HasProfile { num_points: profile.len() })
         }

@@ -1,6 +1,6 @@
 //! Sentences and remedies of the warnings.
 
-use crate::calibrate::{Inverted, PoseFault, Warning};
+use crate::calibrate::{PoseFault, Warning};
 
 /// What is the matter, in one sentence.
 #[must_use]
@@ -73,13 +73,8 @@ pub fn warning_message(warning: &Warning) -> String {
                 PoseFault::Both => "neither its place nor its orientation fits",
             }
         ),
-        Warning::StreamInverted { inverted, ratio } => format!(
-            "With {} inverted the residual is {ratio:.0} times smaller.",
-            match inverted {
-                Inverted::Robot => "the robot's poses",
-                Inverted::Target => "the target's poses",
-                Inverted::Both => "the poses of robot and target",
-            }
+        Warning::StreamInverted { ratio } => format!(
+            "With the robot's poses or the target's inverted the residual is {ratio:.0} times smaller: the sensor is mounted the other way than the session says, or one of the two lists is given the wrong way round."
         ),
         Warning::TargetScale { factor, std } => format!(
             "The target's distances fit better by a factor of {factor:.4} ± {std:.4}: its size is another than was told to whatever found it, or its unit is."
@@ -136,10 +131,9 @@ pub const fn warning_remedy(warning: &Warning) -> &'static str {
         Warning::PoseRejected { .. } => {
             "Measure the station again: with robot and target at rest, and both read at one time."
         }
-        Warning::StreamInverted { inverted: Inverted::Robot, .. } => {
-            "Set the mounting (sensor on the flange, or fixed) to the other one, or have the robot's poses as base_from_flange."
+        Warning::StreamInverted { .. } => {
+            "Set the mounting (sensor on the flange, or fixed) to the other one, or have the poses as base_from_flange and sensor_from_target."
         }
-        Warning::StreamInverted { .. } => "Have the poses as base_from_flange and sensor_from_target.",
         Warning::TargetScale { .. } => {
             "Measure the target with a caliper, and give its true size to the program that finds its pose."
         }

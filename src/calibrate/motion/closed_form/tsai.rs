@@ -2,7 +2,7 @@
 //!
 //! # Source
 //! R. Y. Tsai, R. K. Lenz, "A new technique for fully autonomous and efficient 3D robotics hand/eye calibration", IEEE Trans.
-//! Robotics and Automation 5(3), 1989, eq. 9–15: skew(P_A + P_B) P' = P_B − P_A with P = 2 sin(θ/2) n, and P' = tan(θ/2) n
+//! Robotics and Automation 5(3), 1989, eq. 9–15: skew(`P_A` + `P_B`) P' = `P_B` − `P_A` with P = 2 sin(θ/2) n, and P' = tan(θ/2) n
 //! of the rotation sought. That grows without bounds near a half turn, which is the method's singular place.
 
 use nalgebra::{Quaternion, UnitQuaternion};

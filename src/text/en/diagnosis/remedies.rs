@@ -28,7 +28,6 @@ pub fn remedy_label(remedy: &Remedy, session: &Session) -> String {
             Mount::OnFlange => "Set mounting to fixed beside the robot".to_owned(),
             Mount::Fixed => "Set mounting to on the flange".to_owned(),
         },
-        Remedy::InvertTargets => "Invert poses of the target".to_owned(),
         Remedy::ScaleTargets(factor) => format!("Scale the target by {}", fixed(*factor, FACTOR_DECIMALS)),
         Remedy::RemoveTool { from_station_idx, .. } => {
             format!("Take TOOL out of poses from station {}", station_label(session, *from_station_idx))
