@@ -2,7 +2,7 @@
 //! `docs/motion.md`), and the time of each.
 //!
 //! Seeds are fixed, so anyone gets the same table.
-#![expect(clippy::expect_used, missing_docs, reason = "a benchmark that cannot solve its problem must stop")]
+#![expect(clippy::expect_used, reason = "a benchmark that cannot solve its problem must stop")]
 
 #[path = "../tests/motion_cell/mod.rs"]
 mod motion_cell;

@@ -38,7 +38,7 @@ fn shell_words(line: &str) -> Vec<String> {
 #[test]
 fn simulated_samples_are_what_their_documented_commands_give() {
     let commands = documented_commands();
-    assert_eq!(commands.len(), 10);
+    assert_eq!(commands.len(), 11);
     for args in commands {
         let written = to_json(&simulated_session(&args).expect("a documented command is valid"));
         let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(&args.out);
