@@ -70,7 +70,7 @@ pub enum Command {
     /// Plans the stations to measure next
     Plan(plan::PlanArgs),
     /// Writes a simulated session with its truth
-    Simulate(simulate::SimulateArgs),
+    Simulate(Box<simulate::SimulateArgs>),
     /// Serves a simulated cell on loopback with the real wire protocols, until stopped
     Cell(cell::CellArgs),
     /// Writes a report to read, print and sign: a page, tables, the result file, texts for the controller
