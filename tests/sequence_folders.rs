@@ -119,7 +119,7 @@ fn folders_without_a_frame_are_refused_by_name() {
             |walk| {
                 edit(&walk.join("camera.json"), |text| {
                     text.replace("\"quaternion_wxyz\": [", "\"quaternion_wxyz\": [1,")
-                })
+                });
             },
             &["camera.json", "color_from_depth.quaternion_wxyz"],
         ),
@@ -141,7 +141,7 @@ fn folders_without_a_frame_are_refused_by_name() {
             "no numbers",
             |walk| {
                 fs::write(walk.join("associations.txt"), "NaN rgb/0.000000.png NaN depth/0.000000.png\nx\n")
-                    .expect("written")
+                    .expect("written");
             },
             &["associations.txt", "line 1", "NaN"],
         ),
