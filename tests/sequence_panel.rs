@@ -1,5 +1,4 @@
 //! The view of an RGB-D sequence, driven by the names that screen readers see, in the whole window.
-#![expect(clippy::expect_used, reason = "helpers of tests may fail as tests do")]
 
 mod step_window;
 

@@ -175,14 +175,14 @@ impl Workbench {
     /// A session's file, or the folder of an RGB-D sequence.
     pub(super) fn open_file(&mut self, path: PathBuf) {
         if path.is_dir() {
-            self.open_sequence(absolute(path));
+            self.open_sequence(&absolute(path));
         } else {
             self.start_loading(path, Purpose::Open);
         }
     }
 
     /// The session of a sequence stands beside its folder and is called like it; where there is none, it is begun.
-    fn open_sequence(&mut self, folder: PathBuf) {
+    fn open_sequence(&mut self, folder: &Path) {
         let Some(name) = folder.file_name().map(|name| name.to_string_lossy().into_owned()) else {
             self.notify_of_opening(words::no_name(&folder.display().to_string()));
             return;

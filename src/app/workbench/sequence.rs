@@ -16,7 +16,7 @@ use crate::watch::{Cancelled, Watch};
 use super::{Results, Workbench};
 
 /// What is asked of a sequence.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SequenceCommand {
     /// Shows the pictures of a frame, by its place in the sequence.
     Look(usize),

@@ -97,6 +97,11 @@ pub fn pixel_readout(column: usize, row: usize, distance_m: Option<Option<&str>>
     }
 }
 
+/// In place of tables of stations.
+pub const NO_TABLES: &str =
+    "A sequence has no stations to list: the calibration stands at the right, what it was found from under Sequence.";
+/// In place of findings.
+pub const NO_DIAGNOSIS: &str = "A sequence has no stations to diagnose. Frames that were not tracked say why under Sequence; warnings of the calibration stand at the right.";
 /// The step without a session.
 pub const NO_SESSION: &str = "Open a session with an RGB-D sequence, or the folder of one.";
 /// The lists are being read.
