@@ -27,7 +27,7 @@ fn session(num_stations: usize, num_steps: usize, dirt: Dirt) -> Session {
 fn first_profile(session: &Session) -> &Profile {
     match &session.stations[0].captures[0].reading {
         Reading::Profile(profile) => profile,
-        Reading::Point(_) => unreachable!("simulated sessions hold profiles"),
+        Reading::Point(_) | Reading::Pose(_) => unreachable!("simulated sessions hold profiles"),
     }
 }
 

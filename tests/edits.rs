@@ -328,6 +328,7 @@ fn in_short(session: &Session) -> String {
     let station = |(idx, station): (usize, &Station)| {
         let places = station.captures.iter().map(|capture| match capture.reading {
             Reading::Point(point) => format!("{}{}", point.x, point.y),
+            Reading::Pose(seen) => format!("{}", seen.translation_mm()),
             Reading::Profile(_) => "profile".to_owned(),
         });
         let row = printed.get(idx).map_or_else(String::new, |row| format!("|{}", row.x));

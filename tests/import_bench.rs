@@ -224,7 +224,7 @@ fn sessions_are_opened_and_everything_else_is_previewed() {
 fn valid_points(reading: &Reading) -> Vec<(f64, f64)> {
     match reading {
         Reading::Profile(profile) => profile.valid_points().map(|(_, x, z)| (x, z)).collect(),
-        Reading::Point(_) => Vec::new(),
+        Reading::Point(_) | Reading::Pose(_) => Vec::new(),
     }
 }
 

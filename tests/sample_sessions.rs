@@ -1,10 +1,12 @@
 //! The sample sessions: all open, all can be saved, and the simulated ones are what their documented commands give.
 #![expect(clippy::expect_used, reason = "a test that finds nothing to check must fail")]
 
-use std::path::PathBuf;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 use clap::Parser;
-use handeye::cli::simulate::{SimulateArgs, simulated_session};
+use handeye::cli::simulate::{SimulateArgs, TargetArg, run, simulated_session};
 use handeye::session::{Reading, check, format, parse, samples, to_json};
 
 #[derive(Parser)]
@@ -36,7 +38,7 @@ fn shell_words(line: &str) -> Vec<String> {
 #[test]
 fn simulated_samples_are_what_their_documented_commands_give() {
     let commands = documented_commands();
-    assert_eq!(commands.len(), 9);
+    assert_eq!(commands.len(), 11);
     for args in commands {
         let written = to_json(&simulated_session(&args).expect("a documented command is valid"));
         let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(&args.out);
@@ -47,6 +49,47 @@ fn simulated_samples_are_what_their_documented_commands_give() {
         let on_disk = std::fs::read_to_string(&path).expect("the sample is there");
         assert!(written == on_disk, "{} differs from what its command gives", args.out.display());
     }
+}
+
+#[test]
+fn the_sample_sequence_is_what_its_documented_command_gives() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut commands = documented_commands();
+    let args = commands.iter_mut().find(|args| args.target == TargetArg::Room).expect("it is documented");
+    let committed = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(&args.out);
+    args.out = folder.path().join(committed.file_name().expect("it has a name"));
+    assert_eq!(run(args), ExitCode::SUCCESS);
+    let sequence = format!("{}-sequence", args.out.file_stem().expect("it has a name").to_string_lossy());
+    let (written, committed) = (folder.path().join(&sequence), committed.with_file_name(&sequence));
+    if std::env::var_os("HANDEYE_WRITE_SAMPLES").is_some() {
+        // There is none the first time.
+        let _ = std::fs::remove_dir_all(&committed);
+        for name in files_in(&written) {
+            let path = committed.join(&name);
+            std::fs::create_dir_all(path.parent().expect("a folder")).expect("the sample can be written");
+            std::fs::copy(written.join(&name), path).expect("the sample can be written");
+        }
+    }
+    let names = files_in(&written);
+    assert_eq!(names, files_in(&committed));
+    let mut total = 0;
+    for name in names {
+        let [new, old] = [&written, &committed].map(|folder| std::fs::read(folder.join(&name)).expect("it is there"));
+        assert!(new == old, "{} differs from what its command gives", name.display());
+        total += old.len();
+    }
+    assert!(total < 6_000_000, "{total} bytes");
+}
+
+/// The files of a sequence, in order.
+fn files_in(sequence: &Path) -> BTreeSet<PathBuf> {
+    let entries = |folder: &str| std::fs::read_dir(sequence.join(folder)).into_iter().flatten().flatten();
+    let files = ["", "rgb", "depth"].into_iter().flat_map(|folder| {
+        entries(folder)
+            .filter(|entry| entry.path().is_file())
+            .map(move |entry| Path::new(folder).join(entry.file_name()))
+    });
+    files.collect()
 }
 
 #[test]

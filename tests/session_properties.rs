@@ -52,7 +52,8 @@ fn reading() -> impl Strategy<Value = Reading> {
         let (x_mm, z_mm): (Vec<f64>, Vec<Option<f64>>) = points.into_iter().unzip();
         Reading::Profile(Arc::new(Profile::new(x_mm, &z_mm).expect("within limits")))
     });
-    prop_oneof![point, profile]
+    let seen = pose().prop_map(|pose| Reading::Pose(Transform::from_rigid(*pose.rigid())));
+    prop_oneof![point, profile, seen]
 }
 
 fn station() -> impl Strategy<Value = Station> {
@@ -91,6 +92,11 @@ fn target() -> impl Strategy<Value = (Target, Known)> {
         (1e-3..1e4, prop::option::of(1e-6..100.0))
             .prop_map(|(radius_mm, radius_std_mm)| (Target::Ball { radius_mm, radius_std_mm }, Known::default())),
         Just((Target::RightAnglePlate, Known::default())),
+        (prop::option::of(1e-6..100.0), prop::option::of(1e-6..90.0)).prop_map(
+            |(translation_std_mm, rotation_std_deg)| {
+                (Target::Pose { translation_std_mm, rotation_std_deg }, Known::default())
+            }
+        ),
         prop::option::of(position)
             .prop_map(|point_in_base_mm| (Target::Point, Known { point_in_base_mm, ..Known::default() })),
         sizes.prop_map(|(angle_deg, pitch_mm, height_mm, diameter_mm)| {
@@ -161,11 +167,12 @@ prop_compose! {
             truth: true_pose.map(|pose| Truth {
                 flange_from_sensor: Transform::from_rigid(*pose.rigid()),
                 target_in_base_mm: match target {
-                    Target::RightAnglePlate => pose.translation_mm(),
+                    Target::RightAnglePlate | Target::Pose { .. } => pose.translation_mm(),
                     Target::Workpiece => Vec3::zeros(),
                     _ => Vec3::new(1.0, 2.0, 0.3),
                 },
                 base_from_plate: (target == Target::RightAnglePlate).then(|| *pose.rigid()),
+                base_from_target: target.is_pose().then(|| *pose.rigid()),
                 unknown: serde_json::Map::new(),
             }),
             target,

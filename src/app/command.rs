@@ -8,6 +8,7 @@ use crate::diagnose::Remedy;
 use crate::plan::Limits;
 use crate::report::document::Options;
 use crate::session::import::ImportOptions;
+use crate::session::sequence::CAMERA_FILE;
 use crate::session::{Edit, Target};
 use crate::verify::Calibration;
 
@@ -15,6 +16,7 @@ use super::cell::CellCommand;
 use super::workbench::NoticeKind;
 use super::workbench::comparing::Sides;
 use super::workbench::scans::ScanCommand;
+use super::workbench::sequence::SequenceCommand;
 
 impl Command {
     /// Reads what a user has pointed at: a session is opened, anything else goes to the import's preview.
@@ -30,8 +32,11 @@ impl Command {
     }
 }
 
-/// Sessions are JSON; of a file without an ending nothing else is known.
+/// Sessions are JSON; of a file without an ending nothing else is known. A folder with a camera's file is a sequence.
 fn names_a_session(path: &Path) -> bool {
+    if path.join(CAMERA_FILE).is_file() {
+        return true;
+    }
     match path.extension() {
         Some(ending) => ending.eq_ignore_ascii_case("json") && !path.is_dir(),
         None => !path.is_dir(),
@@ -131,6 +136,8 @@ pub enum Command {
     Redo,
     /// Solves the session as it is now; needed only after a cancel, as every edit solves by itself.
     Solve,
+    /// What is asked of an RGB-D sequence.
+    Sequence(SequenceCommand),
     /// Stops the solver; the last results stay.
     CancelSolve,
     /// Examines the results as they are now; needed only after a cancel, as new results are examined by themselves.

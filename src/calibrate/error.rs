@@ -118,6 +118,9 @@ pub enum SolveError {
         "some targets are seen by a sensor on the flange, others by one beside the robot: they share no calibration"
     )]
     MixedMounts,
+    /// Poses that cannot be matched by their times.
+    #[error("the times of a list of poses do not rise; sort each list by time, with one pose a time")]
+    TimesNotRising,
     /// No start led to a finite solution.
     #[error("the solver found no finite solution; check poses and units")]
     Diverged,

@@ -22,11 +22,13 @@ pub enum Method {
     PlateBundle,
     /// A tip or pin that the laser line touches from several poses.
     FixedPoint,
+    /// The flange's motions against those of a target, or of a camera: A X = X B.
+    Motion,
 }
 
 impl Method {
     /// All methods, in the order in which they are shown.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::BallFixedPoint,
         Self::BallMaxArcStep,
         Self::BallMaxArc,
@@ -34,9 +36,10 @@ impl Method {
         Self::PlateOrthogonal,
         Self::PlateBundle,
         Self::FixedPoint,
+        Self::Motion,
     ];
     /// All of them, the one whose answer is to be used first.
-    pub const BEST_FIRST: [Self; 7] = [
+    pub const BEST_FIRST: [Self; 8] = [
         Self::BallBundle,
         Self::BallMaxArc,
         Self::BallFixedPoint,
@@ -44,6 +47,7 @@ impl Method {
         Self::PlateBundle,
         Self::PlateOrthogonal,
         Self::FixedPoint,
+        Self::Motion,
     ];
     /// Those for a ball.
     pub const BALL: [Self; 4] = [Self::BallFixedPoint, Self::BallMaxArcStep, Self::BallMaxArc, Self::BallBundle];
@@ -51,6 +55,8 @@ impl Method {
     pub const PLATE: [Self; 2] = [Self::PlateOrthogonal, Self::PlateBundle];
     /// That for a tip.
     pub const POINT: [Self; 1] = [Self::FixedPoint];
+    /// That for a target whose whole pose is seen.
+    pub const MOTION: [Self; 1] = [Self::Motion];
 
     /// The name in files and on the command line.
     #[must_use]
@@ -63,7 +69,14 @@ impl Method {
             Self::PlateOrthogonal => "plate-orthogonal",
             Self::PlateBundle => "plate-bundle",
             Self::FixedPoint => "fixed-point",
+            Self::Motion => "motion",
         }
+    }
+
+    /// Whether its target may be on either side of the sensor's plane, and the side is part of what was found.
+    #[must_use]
+    pub const fn has_sides(self) -> bool {
+        !matches!(self, Self::FixedPoint | Self::Motion)
     }
 
     /// The method with this name.
@@ -92,7 +105,7 @@ pub fn solve(problem: &BallProblem, method: Method) -> Result<Solution, SolveErr
         Method::BallMaxArcStep => ball::max_arc_step::solve(problem),
         Method::BallMaxArc => ball::max_arc::solve(problem),
         Method::BallBundle => ball::bundle::solve(problem),
-        Method::PlateOrthogonal | Method::PlateBundle | Method::FixedPoint => {
+        Method::PlateOrthogonal | Method::PlateBundle | Method::FixedPoint | Method::Motion => {
             Err(SolveError::OtherTarget { method, available: &Method::BALL })
         }
     }

@@ -8,9 +8,11 @@
 //! "base" where a name says flange, and "flange" where it says base.
 
 pub mod ball;
+mod components;
 pub mod error;
 pub mod joint;
 pub mod method;
+pub mod motion;
 pub mod observation;
 pub mod plate;
 pub mod problem;
@@ -27,9 +29,11 @@ pub mod warning;
 pub use error::SolveError;
 pub use joint::{JointSolution, JointTarget, solve_joint};
 pub use method::{Method, MethodResult, best_available, solution_of, solve, solve_all};
+pub use motion::{ClosedForm, ClosedFormAnswer, MotionFound, MotionPose, MotionReduced, RejectedPose};
 pub use plate::PlateReduced;
 pub use problem::{
-    BallProblem, Capture, Edge, Mount, Noise, PlateProblem, PlateStation, Problem, Reading, Side, SideChoice, Station,
+    BallProblem, Capture, Edge, MotionProblem, Mount, Noise, PlateProblem, PlateStation, Problem, Reading, Side,
+    SideChoice, Station, TargetNoise,
 };
 pub use reduced::Reduced;
 pub(crate) use shared_warnings::{ONE_AXIS_RATIO, RECOMMENDED_SPAN_DEG};
@@ -38,4 +42,4 @@ pub use solution::{
     SweepPoint, Uncertainty,
 };
 pub use verdict::{Verdict, VerdictReason};
-pub use warning::Warning;
+pub use warning::{PoseFault, Warning};

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use crate::fit::{ArcFit, EdgeFit, Found, Refusal};
-use crate::geometry::{Base, Flange, Sensor, Transform, Vec3};
+use crate::geometry::{Base, Flange, Sensor, Target, Transform, Vec3};
 use crate::watch::{Cancelled, Watch};
 
-use super::{Method, MethodResult, Solution, SolveError, ball, plate};
+use super::{Method, MethodResult, Solution, SolveError, ball, motion, plate};
 
 /// Where the sensor is mounted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -98,15 +98,18 @@ pub enum Reading {
     Refused(Refusal),
     /// Already reduced elsewhere, in the sensor frame, mm: the ball's centre, a point on an edge, or the tip.
     Point(Vec3),
+    /// The target's whole pose, as a marker or a board gives it.
+    Pose(Transform<Sensor, Target>),
 }
 
 impl Reading {
-    /// The point of an edge or tip in the sensor frame, mm; none of a ball's arc.
+    /// The point of an edge or tip, or a target's origin, in the sensor frame, mm; none of a ball's arc.
     #[must_use]
     pub fn point_in_sensor_mm(&self) -> Option<Vec3> {
         match self {
             Self::Edge(edge) => Some(Vec3::new(edge.point_mm[0], 0.0, edge.point_mm[1])),
             Self::Point(point) => Some(*point),
+            Self::Pose(sensor_from_target) => Some(sensor_from_target.translation_mm()),
             Self::Arc(_) | Self::Refused(_) => None,
         }
     }
@@ -198,6 +201,30 @@ pub struct PlateProblem {
     pub stations: Vec<PlateStation>,
 }
 
+/// Noise of a target's pose in the sensor frame, where it is known.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TargetNoise {
+    /// Standard deviation of each coordinate of its origin, mm.
+    pub translation_std_mm: Option<f64>,
+    /// Standard deviation of its orientation about each axis, rad.
+    pub rotation_std_rad: Option<f64>,
+}
+
+/// A calibration from the poses of a target: A X B = Z, the same as A X = X B for its motions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MotionProblem {
+    /// Where the sensor is. For [`Mount::Fixed`] the captures hold the inverted poses.
+    pub mount: Mount,
+    /// Noise of the robot, where it is known.
+    pub noise: Noise,
+    /// Noise of the target's poses, where it is known.
+    pub target_noise: TargetNoise,
+    /// The distance along z for which the headline accuracy is stated, mm; without it, that of the targets seen.
+    pub reference_distance_mm: Option<f64>,
+    /// The stations to be used.
+    pub stations: Vec<Station>,
+}
+
 /// A calibration from whatever the target is.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Problem {
@@ -207,6 +234,8 @@ pub enum Problem {
     Point(BallProblem),
     /// From a right-angle plate.
     Plate(PlateProblem),
+    /// From a target whose whole pose is seen.
+    Motion(MotionProblem),
 }
 
 impl Problem {
@@ -217,6 +246,7 @@ impl Problem {
             Self::Ball(_) => &Method::BALL,
             Self::Point(_) => &Method::POINT,
             Self::Plate(_) => &Method::PLATE,
+            Self::Motion(_) => &Method::MOTION,
         }
     }
 
@@ -225,7 +255,7 @@ impl Problem {
     pub const fn as_ball(&self) -> Option<&BallProblem> {
         match self {
             Self::Ball(ball) => Some(ball),
-            Self::Point(_) | Self::Plate(_) => None,
+            Self::Point(_) | Self::Plate(_) | Self::Motion(_) => None,
         }
     }
 
@@ -241,6 +271,7 @@ impl Problem {
             Self::Ball(ball) => super::solve(ball, method),
             Self::Point(point) => ball::fixed_point::solve(point).map(|found| Solution { method, ..found }),
             Self::Plate(plate) => plate::solve(plate, method),
+            Self::Motion(motion) => motion::solve(motion),
         }
     }
 

@@ -55,7 +55,7 @@ fn refusals<'a>(
     stations.into_iter().flat_map(|station| {
         station.captures.iter().enumerate().filter_map(move |(capture_idx, capture)| match &capture.reading {
             Reading::Refused(reason) => Some((station, capture_idx, reason)),
-            Reading::Arc(_) | Reading::Edge(_) | Reading::Point(_) => None,
+            Reading::Arc(_) | Reading::Edge(_) | Reading::Point(_) | Reading::Pose(_) => None,
         })
     })
 }

@@ -4,7 +4,7 @@ use nalgebra::{Matrix6, Vector6};
 
 use crate::geometry::{Flange, Mat3, Rigid, Sensor, Transform, Vec3};
 
-use super::{Edge, Method, Mount, PlateReduced, Reduced, Side, Warning};
+use super::{Edge, Method, MotionFound, Mount, PlateReduced, Reduced, Side, Warning};
 
 /// Root mean square and maximum of some distances, mm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -215,7 +215,8 @@ pub struct Solution {
     pub mount: Mount,
     /// The hand-eye calibration.
     pub flange_from_sensor: Transform<Flange, Sensor>,
-    /// The target's point, mm: the ball's centre, the tip, or the corner where the plate's edges meet.
+    /// The target's point, mm: the ball's centre, the tip, the corner where the plate's edges meet, or the origin of a target
+    /// whose whole pose is seen.
     pub target_in_base_mm: Vec3,
     /// Distances of the stations' balls or tips from `target_in_base_mm`, or of the points from their edges; in sample.
     pub scatter: RmsMax,
@@ -227,6 +228,8 @@ pub struct Solution {
     pub stations: Vec<StationSolution>,
     /// The plate that was found, for its methods.
     pub plate: Option<PlateFound>,
+    /// The target's whole pose and what belongs to it, for [`Method::Motion`].
+    pub motion: Option<MotionFound>,
     /// Angle of the largest rotation between two poses, rad.
     pub rotation_span_rad: f64,
     /// What the user should know.
@@ -237,7 +240,7 @@ pub struct Solution {
     pub noise: Option<NoiseModel>,
     /// The ball's radius where it was estimated as well.
     pub radius: Option<EstimatedRadius>,
-    /// The data at the minimum, for validation, diagnosis and planning; `None` for a plate.
+    /// The data at the minimum, for validation, diagnosis and planning; `None` for a plate and for [`Method::Motion`].
     pub reduced: Option<Reduced>,
     /// How the result follows the ball's radius: change of (rotation about the sensor's axes in rad, translation along the
     /// flange's axes in mm) a mm of radius.

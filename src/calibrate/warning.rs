@@ -2,6 +2,21 @@
 
 use crate::fit::Refusal;
 
+/// What would explain a pose that contradicts the others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PoseFault {
+    /// The target's pose is inverted: it fits as `target_from_sensor`.
+    Inverted,
+    /// The target is seen turned by half about one of its axes, or mirrored by its tilt: a flat marker read the wrong way.
+    Flipped,
+    /// Its place fits, its orientation does not.
+    Orientation,
+    /// Its orientation fits, its place does not.
+    Place,
+    /// Neither fits.
+    Both,
+}
+
 /// Something about a result that the user should know. Sentence and remedy come from [`crate::text`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Warning {
@@ -128,6 +143,34 @@ pub enum Warning {
         /// The median of the others, mm.
         typical_mm: f64,
     },
+    /// A target's pose that contradicts all others was left out.
+    PoseRejected {
+        /// Station.
+        label: String,
+        /// Capture, from 0.
+        capture_idx: usize,
+        /// How far it puts the target from where the others have it, mm.
+        off_mm: f64,
+        /// By how much it turns the target, degrees.
+        off_deg: f64,
+        /// What would explain it.
+        fault: PoseFault,
+    },
+    /// All poses fit far better with one of the two lists inverted. Which one cannot be told: with both inverted they fit as
+    /// well, and sensor and target change places.
+    StreamInverted {
+        /// Residual as given over residual with one inverted.
+        ratio: f64,
+    },
+    /// The target's poses are too far or too near by one factor: a board or marker of another size than was stated.
+    TargetScale {
+        /// The factor that its translations need.
+        factor: f64,
+        /// Its standard deviation.
+        std: f64,
+    },
+    /// The data do not tell by how much the clocks of robot and camera differ.
+    TimeOffsetUnknown,
     /// The solver stopped before it settled.
     NotConverged {
         /// Iterations made.
@@ -155,6 +198,10 @@ impl Warning {
             Self::RadiusDisagrees { .. } => "radius-disagrees",
             Self::StepDiffersFromPose { .. } => "step-differs-from-pose",
             Self::StationStandsOut { .. } => "station-stands-out",
+            Self::PoseRejected { .. } => "pose-rejected",
+            Self::StreamInverted { .. } => "stream-inverted",
+            Self::TargetScale { .. } => "target-scale",
+            Self::TimeOffsetUnknown => "time-offset-unknown",
             Self::NotConverged { .. } => "not-converged",
         }
     }
@@ -176,6 +223,8 @@ impl Warning {
                 | Self::RadiusDisagrees { .. }
                 | Self::ArcLargerThanBall { .. }
                 | Self::StationStandsOut { .. }
+                | Self::StreamInverted { .. }
+                | Self::TargetScale { .. }
                 | Self::NotConverged { .. }
         )
     }

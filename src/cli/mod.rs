@@ -14,7 +14,9 @@ pub mod compare;
 pub mod export;
 pub mod history;
 pub mod import;
+pub mod odometry;
 pub mod plan;
+mod progress;
 pub mod report;
 pub mod scan;
 pub mod screenshot;
@@ -63,10 +65,12 @@ pub enum Command {
     Compare(compare::CompareArgs),
     /// Lists the calibrations of a folder over time: drift and jumps
     History(history::HistoryArgs),
+    /// Finds the motion of an RGB-D camera from a recorded sequence: trajectory, distance, heading
+    Odometry(odometry::OdometryArgs),
     /// Plans the stations to measure next
     Plan(plan::PlanArgs),
     /// Writes a simulated session with its truth
-    Simulate(simulate::SimulateArgs),
+    Simulate(Box<simulate::SimulateArgs>),
     /// Serves a simulated cell on loopback with the real wire protocols, until stopped
     Cell(cell::CellArgs),
     /// Writes a report to read, print and sign: a page, tables, the result file, texts for the controller
@@ -89,6 +93,7 @@ impl Command {
             Self::Scan(args) => scan::run(args),
             Self::Compare(args) => compare::run(args),
             Self::History(args) => history::run(args),
+            Self::Odometry(args) => odometry::run(args),
             Self::Plan(args) => plan::run(args),
             Self::Simulate(args) => simulate::run(args),
             Self::Cell(args) => cell::run(args),

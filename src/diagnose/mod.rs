@@ -10,6 +10,7 @@ pub mod finding;
 pub mod geometry;
 pub mod hypotheses;
 mod model;
+mod motion;
 mod plate;
 pub mod remedy;
 mod station_reading;
@@ -111,6 +112,7 @@ pub fn diagnose_any(
             diagnose(Case { session, problem, results }, watch)
         }
         Problem::Plate(problem) => plate::examine(session, problem, results, watch),
+        Problem::Motion(_) => motion::examine(results, watch),
     }
 }
 

@@ -239,7 +239,7 @@ impl Model {
                         let measured = match &capture.reading {
                             Reading::Arc(arc) => Measured::Arc(Arc::clone(arc)),
                             Reading::Point(point) => Measured::Point(*point),
-                            Reading::Edge(_) | Reading::Refused(_) => return None,
+                            Reading::Edge(_) | Reading::Refused(_) | Reading::Pose(_) => return None,
                         };
                         Some(Section { base_from_flange: *capture.base_from_flange.rigid(), measured })
                     })

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::calibrate::{Edge, SideChoice};
+use crate::calibrate::{Edge, Mount, SideChoice};
 use crate::geometry::{Profile, Transform};
 use crate::session::{Reading, Session, Target};
 
@@ -34,6 +34,10 @@ pub enum Remedy {
     ScaleProfiles(f64),
     /// This coordinate of all profiles (and reduced points) with the other sign.
     MirrorProfiles(Axis),
+    /// The sensor is mounted the other way: on the flange, or fixed beside the robot.
+    ToOtherMount,
+    /// The places of the target times this factor.
+    ScaleTargets(f64),
     /// The stations from the first on report this frame; their poses become those of the flange again.
     RemoveTool {
         /// The first station concerned.
@@ -92,6 +96,19 @@ pub fn apply(session: &Session, remedy: &Remedy) -> Session {
         Remedy::ScaleProfiles(factor) => change_readings(&mut mended, |x, z| (x * factor, z * factor)),
         Remedy::MirrorProfiles(Axis::X) => change_readings(&mut mended, |x, z| (-x, z)),
         Remedy::MirrorProfiles(Axis::Z) => change_readings(&mut mended, |x, z| (x, -z)),
+        Remedy::ToOtherMount => {
+            mended.mount = match mended.mount {
+                Mount::OnFlange => Mount::Fixed,
+                Mount::Fixed => Mount::OnFlange,
+            };
+        }
+        Remedy::ScaleTargets(factor) => {
+            for capture in mended.stations.iter_mut().flat_map(|station| &mut station.captures) {
+                if let Reading::Pose(seen) = &mut capture.reading {
+                    *seen = Transform::from_parts(seen.translation_mm() * *factor, seen.rotation());
+                }
+            }
+        }
         Remedy::RemoveTool { from_station_idx, flange_from_tool } => {
             let tool_from_flange = flange_from_tool.inverse();
             for capture in mended.stations.iter_mut().skip(*from_station_idx).flat_map(|station| &mut station.captures)
@@ -109,6 +126,8 @@ fn change_readings(session: &mut Session, map: impl Fn(f64, f64) -> (f64, f64)) 
     for capture in session.stations.iter_mut().flat_map(|station| &mut station.captures) {
         match &mut capture.reading {
             Reading::Point(point) => (point.x, point.z) = map(point.x, point.z),
+            // A camera has no line to mirror or scale.
+            Reading::Pose(_) => {}
             Reading::Profile(profile) => {
                 if let Some(changed) = changed_profile(profile, &map) {
                     *profile = Arc::new(changed);

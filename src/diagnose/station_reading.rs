@@ -40,7 +40,7 @@ impl<'a> StationReading<'a> {
             covariance,
         };
         match &capture.reading {
-            Reading::Edge(_) | Reading::Refused(_) => None,
+            Reading::Edge(_) | Reading::Refused(_) | Reading::Pose(_) => None,
             Reading::Point(point) => Some(of_centre(*point, false, Mat3::zeros())),
             Reading::Arc(arc) => {
                 let [std_x, std_z, std_l] = arc.std_mm();
@@ -111,7 +111,7 @@ fn y_of_sweep(
                 let travel = direction.dot(&travel_in_flange(problem.mount, from, pose));
                 Some((travel, arc.circle.radius_mm, arc.std_mm()[2]))
             }
-            Reading::Edge(_) | Reading::Refused(_) | Reading::Point(_) => None,
+            Reading::Edge(_) | Reading::Refused(_) | Reading::Point(_) | Reading::Pose(_) => None,
         })
         .collect();
     #[expect(clippy::cast_precision_loss, reason = "a sweep has few steps")]

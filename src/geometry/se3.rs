@@ -35,6 +35,17 @@ pub fn right_jacobian(tangent: &Vector6<f64>) -> Matrix6<f64> {
     jacobian
 }
 
+/// How a perturbation of `Src` looks in `Dst`: `dst_from_src * exp(t) == exp(adjoint * t) * dst_from_src`.
+#[must_use]
+pub fn adjoint(dst_from_src: &Rigid) -> Matrix6<f64> {
+    let rotation = dst_from_src.rotation.to_rotation_matrix().into_inner();
+    let mut adjoint = Matrix6::zeros();
+    adjoint.fixed_view_mut::<3, 3>(0, 0).copy_from(&rotation);
+    adjoint.fixed_view_mut::<3, 3>(3, 3).copy_from(&rotation);
+    adjoint.fixed_view_mut::<3, 3>(3, 0).copy_from(&(hat(dst_from_src.translation.vector) * rotation));
+    adjoint
+}
+
 /// Barfoot's Q: how a rotation changes the translation, eq. 7.86b.
 fn coupling(rotation_vector: Vec3, translation: Vec3) -> Mat3 {
     let angle = rotation_vector.norm();
@@ -88,6 +99,13 @@ mod tests {
             // Translations of 14 mm hold 1e-14; near π the Jacobian's inverse amplifies a little.
             assert!((log(&exp(&tangent)) - tangent).norm() < 1e-12, "{tangent}");
         }
+    }
+
+    #[test]
+    fn a_perturbation_may_be_made_on_either_side() {
+        let (first, small) = (exp(&sample_tangents()[9]), sample_tangents()[2] * 0.1);
+        let (right, left) = (first * exp(&small), exp(&(adjoint(&first) * small)) * first);
+        assert!((log(&(left.inverse() * right))).norm() < 1e-12);
     }
 
     #[test]

@@ -16,6 +16,7 @@ pub mod files;
 pub mod html;
 pub mod judgement;
 pub mod markdown;
+pub mod odometry_file;
 pub mod open;
 pub mod pdf;
 pub mod result_file;

@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use crate::calibrate::{
-    Method, MethodResult, Mount, NoiseModel, PlatePoint, Solution, StationSolution, Uncertainty, Warning,
+    Method, MethodResult, MotionFound, Mount, NoiseModel, PlatePoint, Solution, StationSolution, Uncertainty, Warning,
     best_available,
 };
 use crate::diagnose::{Diagnosis, verdict_with};
@@ -54,7 +54,7 @@ pub fn plan_file(session: &Session, plan: &Plan, method: Option<Method>) -> Valu
     })
 }
 
-fn method_entry(session: &Session, result: &MethodResult, diagnosis: Option<&Diagnosis>) -> Value {
+pub(super) fn method_entry(session: &Session, result: &MethodResult, diagnosis: Option<&Diagnosis>) -> Value {
     match &result.outcome {
         Ok(solution) => solution_entry(session, solution, diagnosis),
         Err(error) => json!({
@@ -106,6 +106,9 @@ fn solution_entry(session: &Session, solution: &Solution, diagnosis: Option<&Dia
             }),
         );
     }
+    if let Some(found) = &solution.motion {
+        entry.insert("motion".to_owned(), motion(found, &names));
+    }
     entry.insert(
         "stations".to_owned(),
         session
@@ -130,19 +133,84 @@ struct Names {
     sensor: &'static str,
     target: &'static str,
     plate: &'static str,
+    board: &'static str,
 }
 
 impl Names {
     const fn of(mount: Mount) -> Self {
         match mount {
-            Mount::OnFlange => {
-                Self { sensor: "flange_from_sensor", target: "target_in_base_mm", plate: "base_from_plate" }
-            }
-            Mount::Fixed => {
-                Self { sensor: "base_from_sensor", target: "target_in_flange_mm", plate: "flange_from_plate" }
-            }
+            Mount::OnFlange => Self {
+                sensor: "flange_from_sensor",
+                target: "target_in_base_mm",
+                plate: "base_from_plate",
+                board: "base_from_target",
+            },
+            Mount::Fixed => Self {
+                sensor: "base_from_sensor",
+                target: "target_in_flange_mm",
+                plate: "flange_from_plate",
+                board: "flange_from_target",
+            },
         }
     }
+}
+
+/// The target's pose, and what the published closed forms make of the same data.
+fn motion(found: &MotionFound, names: &Names) -> Value {
+    let closed_forms: Vec<Value> = found
+        .closed_forms
+        .iter()
+        .map(|closed_form| {
+            let mut entry = json!({ "form": closed_form.form.id(), "status": "failed" });
+            if let Some(answer) = &closed_form.answer {
+                entry["status"] = json!("ok");
+                entry[names.sensor] = transform(&answer.flange_from_sensor);
+                entry["off_mm"] = json!(answer.off_mm);
+                entry["off_deg"] = json!(answer.off_rad.to_degrees());
+                entry["residual_mm"] = json!(answer.residual_mm);
+                entry["residual_deg"] = json!(answer.residual_rad.to_degrees());
+            }
+            entry
+        })
+        .collect();
+    let rejected: Vec<Value> = found
+        .rejected
+        .iter()
+        .map(|pose| {
+            json!({
+                "label": pose.label,
+                "capture": pose.capture_idx + 1,
+                "off_mm": pose.off_mm,
+                "off_deg": pose.off_rad.to_degrees(),
+                "fault": text::pose_fault_id(pose.fault),
+            })
+        })
+        .collect();
+    let mut entry = json!({
+        names.board: transform(&found.base_from_target),
+        "rotation_scatter_deg": found.rotation_scatter_rad.to_degrees(),
+        "target_noise": {
+            "translation_std_mm": found.target_translation_std_mm,
+            "rotation_std_deg": found.target_rotation_std_rad.to_degrees(),
+        },
+        "closed_forms": closed_forms,
+        "rejected": rejected,
+    });
+    if let Some(tracked) = &found.tracked {
+        entry["steps"] = json!({
+            "num": tracked.num_steps,
+            "lost": tracked.num_lost,
+            "rms_mm": tracked.step_mm.rms_mm,
+            "max_mm": tracked.step_mm.max_mm,
+            "rms_deg": tracked.step_rms_rad.to_degrees(),
+            "rotation_std_factor": tracked.rotation_std_factor,
+            "translation_std_factor": tracked.translation_std_factor,
+        });
+    }
+    if let Some(offset) = &found.time_offset {
+        entry["time_offset_s"] = json!({ "camera_to_robot": offset.offset_s, "std": offset.std_s });
+    }
+    entry
 }
 
 fn rigid(motion: &Rigid) -> Value {
@@ -213,7 +281,7 @@ fn station_entry(station: &StationSolution, names: &Names, method: Method) -> Va
     let mut entry = Map::new();
     entry.insert("label".to_owned(), json!(station.label));
     entry.insert("used".to_owned(), json!(true));
-    if method != Method::FixedPoint {
+    if method.has_sides() {
         entry.insert("side".to_owned(), json!(station.side.symbol()));
         entry.insert("side_cost_ratio".to_owned(), json!(station.side_cost_ratio));
     }

@@ -126,6 +126,7 @@ fn target_entry(target_idx: usize, target: &TargetEvidence, verification: &Verif
         Problem::Ball(_) => "ball",
         Problem::Point(_) => "point",
         Problem::Plate(_) => "right-angle-plate",
+        Problem::Motion(_) => "pose",
     };
     let rows = target.rows.iter().zip(&verification.calibrations).enumerate();
     let results: Vec<Value> = rows

@@ -27,9 +27,14 @@ impl Random {
         (self.0.next_u64() >> 11) as f64 * SCALE
     }
 
+    /// Any 64 bits.
+    pub fn bits(&mut self) -> u64 {
+        self.0.next_u64()
+    }
+
     /// Any byte.
     pub fn byte(&mut self) -> u8 {
-        self.0.next_u64().to_le_bytes()[0]
+        self.bits().to_le_bytes()[0]
     }
 
     /// Uniform in [-1, 1).

@@ -77,6 +77,7 @@ pub fn poses_csv(session: &Session, notation: &PoseNotation, style: TableStyle) 
     };
     let orientation = notation.orientation_names().iter().map(|name| format!("{name}{angle_unit}"));
     let has_edges = session.target == Target::RightAnglePlate;
+    let is_pose = session.target.is_pose();
     let head: Vec<String> = ["label", "capture", "side"]
         .into_iter()
         .chain(has_edges.then_some("edge"))
@@ -85,6 +86,7 @@ pub fn poses_csv(session: &Session, notation: &PoseNotation, style: TableStyle) 
         .chain(position)
         .chain(orientation)
         .chain(["point_x_mm", "point_y_mm", "point_z_mm", "profile", "notation"].map(str::to_owned))
+        .chain(TARGET_POSE.into_iter().filter(|_| is_pose).map(str::to_owned))
         .collect();
     // In every row, as people sort and cut tables.
     let notation_text = notation.text();
@@ -103,6 +105,7 @@ pub fn poses_csv(session: &Session, notation: &PoseNotation, style: TableStyle) 
             ]);
             row.extend(shown_numbers(capture, notation).iter().map(|number| style.number(*number)));
             match &capture.reading {
+                Reading::Pose(_) => row.extend(["", "", "", ""].map(str::to_owned)),
                 Reading::Point(point_in_sensor) => {
                     row.extend(point_in_sensor.iter().map(|coordinate| style.number(*coordinate)));
                     row.push(String::new());
@@ -114,10 +117,24 @@ pub fn poses_csv(session: &Session, notation: &PoseNotation, style: TableStyle) 
                 }
             }
             row.push(notation_text.clone());
+            if is_pose {
+                row.extend(target_pose_cells(&capture.reading, style));
+            }
             row
         })
     });
     style.csv(std::iter::once(head).chain(rows))
+}
+
+/// The columns of `sensor_from_target`.
+const TARGET_POSE: [&str; 7] =
+    ["target_x_mm", "target_y_mm", "target_z_mm", "target_qw", "target_qx", "target_qy", "target_qz"];
+
+fn target_pose_cells(reading: &Reading, style: TableStyle) -> [String; 7] {
+    let Reading::Pose(sensor_from_target) = reading else { return Default::default() };
+    let [x, y, z]: [f64; 3] = sensor_from_target.translation_mm().into();
+    let [qw, qx, qy, qz] = sensor_from_target.quaternion_wxyz();
+    [x, y, z, qw, qx, qy, qz].map(|number| style.number(number))
 }
 
 /// A profile: x and z in millimetres, the cell of a missing z empty.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-use crate::calibrate::{self, BallProblem, Mount, Noise, PlateProblem, PlateStation, Problem};
+use crate::calibrate::{self, BallProblem, MotionProblem, Mount, PlateProblem, PlateStation, Problem, TargetNoise};
 use crate::fit::{ArcOptions, EdgeOptions, Feature, Sought};
 use crate::geometry::{Profile, Transform};
 use crate::watch::{Cancelled, Watch};
@@ -40,7 +40,7 @@ pub const fn sought(target: &Target, profile_std_mm: Option<f64>) -> Option<Soug
         Target::Ball { radius_mm, .. } => Some(Sought::Arc(ArcOptions { ball_radius_mm: *radius_mm, profile_std_mm })),
         Target::RightAnglePlate => Some(Sought::Edge(EdgeOptions { feature: None, profile_std_mm })),
         Target::Point => Some(Sought::Edge(EdgeOptions { feature: Some(Feature::Tip), profile_std_mm })),
-        Target::Workpiece | Target::Rgbd { .. } => None,
+        Target::Pose { .. } | Target::Workpiece | Target::Rgbd { .. } => None,
     }
 }
 
@@ -200,6 +200,9 @@ fn measure_target(
                 Reading::Point(point_in_sensor) => {
                     MeasuredCapture { profile: None, seen: Seen::Target(calibrate::Reading::Point(*point_in_sensor)) }
                 }
+                Reading::Pose(sensor_from_target) => {
+                    MeasuredCapture { profile: None, seen: Seen::Target(calibrate::Reading::Pose(*sensor_from_target)) }
+                }
                 Reading::Profile(profile) => previous
                     .and_then(|measured| measured.stations.get(station_idx)?.get(capture_idx))
                     .filter(|known| known.profile.as_ref().is_some_and(|known| Arc::ptr_eq(known, profile)))
@@ -247,6 +250,7 @@ pub fn ball_problem(session: &Session, measured: &Measured) -> Result<BallProble
         Ok(Problem::Ball(ball)) => Ok(ball),
         Ok(Problem::Plate(_)) => Err(NotABallSession { kind: "a right-angle plate" }),
         Ok(Problem::Point(_)) => Err(NotABallSession { kind: "a point" }),
+        Ok(Problem::Motion(_)) => Err(NotABallSession { kind: "a pose" }),
         Err(NothingToSolve::Workpiece) => Err(NotABallSession { kind: "a workpiece" }),
         Err(NothingToSolve::Rgbd) => Err(NotABallSession { kind: "an RGB-D sequence" }),
     }
@@ -259,10 +263,7 @@ fn posed(
     stations: &[Station],
     measured: &MeasuredTarget,
 ) -> Result<Problem, NothingToSolve> {
-    let noise = Noise {
-        position_std_mm: session.robot.position_std_mm,
-        orientation_std_rad: session.robot.orientation_std_deg.map(f64::to_radians),
-    };
+    let noise = session.robot.noise();
     let reference_distance_mm = session.sensor.reference_distance_mm;
     let used = stations.iter().zip(&measured.stations).enumerate().filter(|(_, (station, _))| station.enabled);
     let posed = used.map(|(idx, (station, readings))| (station, posed_station(session.mount, idx, station, readings)));
@@ -286,6 +287,16 @@ fn posed(
             reference_distance_mm,
             rough_flange_from_sensor: session.sensor.rough_flange_from_sensor,
             stations: posed.filter_map(|(given, station)| Some(PlateStation { edge: given.edge?, station })).collect(),
+        }),
+        Target::Pose { translation_std_mm, rotation_std_deg } => Problem::Motion(MotionProblem {
+            mount: session.mount,
+            noise,
+            target_noise: TargetNoise {
+                translation_std_mm: *translation_std_mm,
+                rotation_std_rad: rotation_std_deg.map(f64::to_radians),
+            },
+            reference_distance_mm,
+            stations: posed.map(|(_, station)| station).collect(),
         }),
         Target::Workpiece => return Err(NothingToSolve::Workpiece),
         Target::Rgbd { .. } => return Err(NothingToSolve::Rgbd),

@@ -12,6 +12,7 @@ pub mod measure;
 pub mod model;
 pub mod samples;
 pub mod scans;
+pub mod sequence;
 pub mod table;
 
 pub use edit::{Edit, EditRefusal, Place, Row, SetupField};

@@ -5,9 +5,10 @@ use std::sync::Arc;
 use serde_json::{Map, Value};
 
 pub use crate::calibrate::Edge;
-use crate::calibrate::{Mount, SideChoice};
+use crate::calibrate::{Mount, Noise, SideChoice};
 use crate::geometry::{
-    Base, Flange, PoseConvention, PoseNotation, Profile, Rigid, Sensor as SensorFrame, Transform, Vec3,
+    Base, Flange, PoseConvention, PoseNotation, Profile, Rigid, Sensor as SensorFrame, Target as TargetFrame,
+    Transform, Vec3,
 };
 use crate::scan::Wanted;
 
@@ -30,6 +31,17 @@ pub struct Robot {
     pub orientation_std_deg: Option<f64>,
     /// Fields unknown to us.
     pub unknown: UnknownFields,
+}
+
+impl Robot {
+    /// The noise of its poses, where it is stated.
+    #[must_use]
+    pub fn noise(&self) -> Noise {
+        Noise {
+            position_std_mm: self.position_std_mm,
+            orientation_std_rad: self.orientation_std_deg.map(f64::to_radians),
+        }
+    }
 }
 
 impl Default for Robot {
@@ -76,6 +88,13 @@ pub enum Target {
     /// A part that is scanned to see what a calibration is worth; nothing is calibrated from it. Its stations are scans: many
     /// captures along a path.
     Workpiece,
+    /// A marker or board whose whole pose is seen.
+    Pose {
+        /// Standard deviation of each coordinate of its origin in the sensor frame, mm, if known.
+        translation_std_mm: Option<f64>,
+        /// Standard deviation of its orientation about each axis, degrees, if known.
+        rotation_std_deg: Option<f64>,
+    },
     /// A recorded sequence of an RGB-D camera in place of stations.
     Rgbd {
         /// The sequence's folder, relative to the session file.
@@ -88,6 +107,18 @@ impl Target {
     #[must_use]
     pub const fn ball(radius_mm: f64) -> Self {
         Self::Ball { radius_mm, radius_std_mm: None }
+    }
+
+    /// A marker or board of which nothing more is known.
+    #[must_use]
+    pub const fn pose() -> Self {
+        Self::Pose { translation_std_mm: None, rotation_std_deg: None }
+    }
+
+    /// Whether captures of this target hold the whole pose of it, as no others do.
+    #[must_use]
+    pub const fn is_pose(&self) -> bool {
+        matches!(self, Self::Pose { .. })
     }
 }
 
@@ -139,6 +170,8 @@ pub enum Reading {
     Profile(Arc<Profile>),
     /// A point in the sensor frame, already reduced, mm.
     Point(Vec3),
+    /// The whole pose of a marker or board: `sensor_from_target`.
+    Pose(Transform<SensorFrame, TargetFrame>),
 }
 
 /// An orientation as the file has it in three numbers, before it became a quaternion: what it was meant to be can only be
@@ -201,11 +234,13 @@ pub struct Published {
 pub struct Truth {
     /// The true calibration. For [`Mount::Fixed`] it is `base_from_sensor`.
     pub flange_from_sensor: Transform<Flange, SensorFrame>,
-    /// The true ball centre, tip or plate's corner, mm; zero for a workpiece, which has no such point. For
-    /// [`Mount::Fixed`] it is in the flange.
+    /// The true ball centre, tip, plate's corner or origin of a marker, mm; zero for a workpiece, which has no such point.
+    /// For [`Mount::Fixed`] it is in the flange.
     pub target_in_base_mm: Vec3,
     /// The true plate: origin in its corner, x along edge p, y along edge q. For [`Mount::Fixed`] it is in the flange.
     pub base_from_plate: Option<Rigid>,
+    /// The true pose of a marker or board. For [`Mount::Fixed`] it is in the flange.
+    pub base_from_target: Option<Rigid>,
     /// Fields unknown to us.
     pub unknown: UnknownFields,
 }

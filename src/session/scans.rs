@@ -58,6 +58,6 @@ fn captures_of(mount: Mount, station: &Station) -> impl Iterator<Item = ScanCapt
             },
             profile: Arc::clone(profile),
         }),
-        Reading::Point(_) => None,
+        Reading::Point(_) | Reading::Pose(_) => None,
     })
 }

@@ -4,6 +4,8 @@ mod fault;
 mod options;
 mod parts;
 mod path;
+pub mod poses;
+pub mod room;
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -95,6 +97,7 @@ pub fn simulate(options: &SimulationOptions) -> Session {
             flange_from_sensor: Transform::from_rigid(setup.carrier_from_sensor),
             target_in_base_mm: if options.target.is_workpiece() { Vec3::zeros() } else { setup.target_in_world },
             base_from_plate: own.base_from_plate,
+            base_from_target: None,
             unknown: UnknownFields::new(),
         }),
         unknown: UnknownFields::new(),

@@ -237,6 +237,7 @@ fn for_each_point(session: &Session, mut check: impl FnMut(&Station, Vec3)) {
             let points: Vec<Vec3> = match &capture.reading {
                 Reading::Profile(profile) => profile.valid_points().map(|(_, x, z)| Vec3::new(x, 0.0, z)).collect(),
                 Reading::Point(point) => vec![*point],
+                Reading::Pose(_) => Vec::new(),
             };
             for point in points {
                 check(station, (target_from_sensor * nalgebra::Point3::from(point)).coords);

@@ -8,7 +8,8 @@ use std::time::{Duration, Instant};
 use crate::app::jobs::Wake;
 use crate::text::{
     capture as capture_words, compare_results as compare_words, import as import_words, report_panel as report_words,
-    shell as words, tool_frame as tool_frame_words, verify as verify_words, workpiece as workpiece_words,
+    sequence as sequence_words, shell as words, tool_frame as tool_frame_words, verify as verify_words,
+    workpiece as workpiece_words,
 };
 
 /// Nobody cancels a dialog faster than this; so quick a "nothing chosen" means that no dialog came up.
@@ -51,6 +52,8 @@ pub enum Purpose {
     ReportFolder,
     /// Choosing a file to write the picture of a plot to.
     Picture,
+    /// Choosing a file to write the motion of a sequence to.
+    SequenceFile,
 }
 
 /// Files of poses and profiles by their endings.
@@ -77,6 +80,7 @@ impl Purpose {
             Self::WatchedFolder => capture_words::FOLDER_TITLE,
             Self::ToolFrame => tool_frame_words::SAVE_TITLE,
             Self::Picture => report_words::PICTURE_TITLE,
+            Self::SequenceFile => sequence_words::SAVE_TITLE,
             Self::ReportFolder => report_words::REPORT_FOLDER_TITLE,
         }
     }
@@ -87,7 +91,7 @@ impl Purpose {
         match self {
             Self::Open | Self::OpenPoints => words::OPEN,
             Self::Calibration => workpiece_words::USE_BUTTON,
-            Self::Save | Self::ToolFrame | Self::Picture | Self::ReportFolder => words::SAVE,
+            Self::Save | Self::ToolFrame | Self::Picture | Self::SequenceFile | Self::ReportFolder => words::SAVE,
             Self::ImportFiles | Self::ImportFolder | Self::AddSession => import_words::IMPORT_BUTTON,
             Self::AddFurther => verify_words::ADD_TARGET_BUTTON,
             Self::ExportPoses | Self::ExportProfiles | Self::ExportPoints => import_words::EXPORT_BUTTON,
@@ -99,7 +103,10 @@ impl Purpose {
     /// Whether a file is written, so that one that is there is replaced.
     #[must_use]
     pub const fn writes_a_file(self) -> bool {
-        matches!(self, Self::Save | Self::ExportPoses | Self::ExportPoints | Self::ToolFrame | Self::Picture)
+        matches!(
+            self,
+            Self::Save | Self::ExportPoses | Self::ExportPoints | Self::ToolFrame | Self::Picture | Self::SequenceFile
+        )
     }
 }
 
@@ -188,7 +195,9 @@ fn ask(purpose: Purpose, suggested_name: &str) -> Answer {
             all(dialog).pick_file().map(one)
         }
         Purpose::Calibration | Purpose::Compared(_) => all(dialog).pick_file().map(one),
-        Purpose::ToolFrame | Purpose::Picture => all(dialog).set_file_name(suggested_name).save_file().map(one),
+        Purpose::ToolFrame | Purpose::Picture | Purpose::SequenceFile => {
+            all(dialog).set_file_name(suggested_name).save_file().map(one)
+        }
         Purpose::ImportFolder
         | Purpose::ExportProfiles
         | Purpose::WatchedFolder

@@ -22,6 +22,7 @@ pub mod report;
 pub mod save_file;
 pub mod save_picture;
 pub mod screenshot;
+pub mod sequence;
 pub mod shell;
 pub mod software_renderer;
 pub mod start;

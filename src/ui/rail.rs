@@ -6,9 +6,11 @@ use crate::app::{CellView, Workbench};
 use crate::calibrate::Verdict;
 use crate::device::LinkState;
 use crate::diagnose::{Severity, verdict_with};
+use crate::session::Target;
 use crate::text::capture as capture_words;
 use crate::text::methods::verdict_mark;
 use crate::text::report_panel as report_words;
+use crate::text::sequence as sequence_words;
 use crate::text::shell as words;
 
 use super::actions::Action;
@@ -70,6 +72,15 @@ impl Step {
         }
     }
 
+    /// Its name with what is on the bench: a sequence has no arcs.
+    fn name_with(self, workbench: &Workbench) -> &'static str {
+        if self == Self::Arcs && is_sequence(workbench) { sequence_words::STEP } else { self.name() }
+    }
+
+    fn hint_with(self, workbench: &Workbench) -> &'static str {
+        if self == Self::Arcs && is_sequence(workbench) { sequence_words::STEP_HINT } else { self.hint() }
+    }
+
     const fn hint(self) -> &'static str {
         match self {
             Self::Session => words::STEP_SESSION_HINT,
@@ -82,6 +93,12 @@ impl Step {
             Self::Report => report_words::STEP_HINT,
         }
     }
+}
+
+/// Whether an RGB-D sequence is on the bench.
+#[must_use]
+pub fn is_sequence(workbench: &Workbench) -> bool {
+    workbench.document().is_some_and(|document| matches!(document.session.target, Target::Rgbd { .. }))
 }
 
 /// What stands at a step's right: the shape says it, the colour only repeats it.
@@ -107,17 +124,24 @@ pub fn show(
     for (idx, step) in Step::ALL.into_iter().enumerate() {
         let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), STEP_HEIGHT), Sense::click());
         let is_current = step == current;
-        response.widget_info(|| WidgetInfo::selected(Role::Tab, true, is_current, step.name()));
+        response.widget_info(|| WidgetInfo::selected(Role::Tab, true, is_current, step.name_with(workbench)));
         let inner = Rect::from_min_max(rect.min + vec2(8.0, 2.0), rect.max - vec2(8.0, 2.0));
-        paint_step(ui, inner, idx + 1, step, is_current, response.hovered() || response.has_focus());
+        paint_step(
+            ui,
+            inner,
+            idx + 1,
+            step.name_with(workbench),
+            is_current,
+            response.hovered() || response.has_focus(),
+        );
         paint_mark(ui, inner, &mark(workbench, selection, num_pose_remarks, step));
-        if response.on_hover_text(step.hint()).clicked() {
+        if response.on_hover_text(step.hint_with(workbench)).clicked() {
             actions.push(Action::GoTo(step));
         }
     }
 }
 
-fn paint_step(ui: &Ui, rect: Rect, number: usize, step: Step, is_current: bool, is_hovered: bool) {
+fn paint_step(ui: &Ui, rect: Rect, number: usize, name: &str, is_current: bool, is_hovered: bool) {
     let palette = theme::palette(ui);
     let painter = ui.painter();
     if is_current || is_hovered {
@@ -130,7 +154,7 @@ fn paint_step(ui: &Ui, rect: Rect, number: usize, step: Step, is_current: bool, 
     let number_color = if is_current { palette.accent } else { palette.text_dim };
     painter.text(left + vec2(12.0, 0.0), Align2::LEFT_CENTER, number, font.clone(), number_color);
     let (name_font, name_color) = if is_current { (strong, palette.accent) } else { (font, palette.text) };
-    painter.text(left + vec2(32.0, 0.0), Align2::LEFT_CENTER, step.name(), name_font, name_color);
+    painter.text(left + vec2(32.0, 0.0), Align2::LEFT_CENTER, name, name_font, name_color);
 }
 
 fn paint_mark(ui: &Ui, rect: Rect, mark: &Mark) {
@@ -231,7 +255,6 @@ mod tests {
 
     use super::*;
     use crate::app::Command;
-    use crate::session::Target;
 
     #[test]
     fn a_session_without_stations_is_no_failure() {

@@ -77,8 +77,15 @@ fn next(workbench: &Workbench, step: Step) -> Option<(String, Action)> {
         // Nothing is computed from it that the other steps would show.
         _ if is_scanned => (words::NEXT_VERIFY, Action::GoTo(Step::Verify)),
         Step::Session | Step::Capture => (words::next_arcs(&document.session.target), Action::GoTo(Step::Arcs)),
+        // A sequence brings its own poses.
+        Step::Arcs if matches!(document.session.target, Target::Rgbd { .. }) => {
+            (words::NEXT_COMPARE, Action::GoTo(Step::Compare))
+        }
         Step::Arcs => (words::NEXT_POSES, Action::GoTo(Step::Poses)),
         Step::Poses => (words::NEXT_COMPARE, Action::GoTo(Step::Compare)),
+        Step::Compare if matches!(document.session.target, Target::Rgbd { .. }) => {
+            (report_words::NEXT_REPORT, Action::GoTo(Step::Report))
+        }
         Step::Compare => (words::NEXT_DIAGNOSIS, Action::GoTo(Step::Diagnosis)),
         Step::Diagnosis | Step::Verify if document.is_unsaved() => (words::NEXT_SAVE, Action::Save),
         Step::Diagnosis | Step::Verify | Step::Report => (report_words::NEXT_REPORT, Action::GoTo(Step::Report)),

@@ -151,7 +151,7 @@ pub fn method_text_color(ui: &egui::Ui, method: Method) -> Color32 {
         return method_color(method).lerp_to_gamma(Color32::WHITE, 0.4);
     }
     match method {
-        Method::BallFixedPoint | Method::FixedPoint => method_color(method),
+        Method::BallFixedPoint | Method::FixedPoint | Method::Motion => method_color(method),
         Method::BallMaxArcStep => Color32::from_rgb(0x66, 0x66, 0x66),
         Method::BallMaxArc => Color32::from_rgb(0xb3, 0x62, 0x00),
         Method::BallBundle | Method::PlateBundle => Color32::from_rgb(0x00, 0x7a, 0x59),

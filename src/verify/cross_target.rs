@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::calibrate::{BallProblem, Edge, PlateProblem, Problem};
+use crate::calibrate::{BallProblem, Edge, PlateProblem, Problem, Station};
 use crate::geometry::{Flange, Sensor, Transform, Vec3, stats};
 
 use super::ball_centre::{Sighting, common_centre, sightings, station_centre};
@@ -108,7 +108,8 @@ pub fn evaluate(
 ) -> Result<Evaluation, NotEvaluated> {
     match problem {
         Problem::Ball(ball) => on_ball(ball, flange_from_sensor, touched_mm),
-        Problem::Point(point) => on_tip(point, flange_from_sensor, touched_mm),
+        Problem::Point(point) => on_tip(&point.stations, flange_from_sensor, touched_mm),
+        Problem::Motion(motion) => on_tip(&motion.stations, flange_from_sensor, touched_mm),
         Problem::Plate(plate) => on_plate(plate, flange_from_sensor),
     }
 }
@@ -147,12 +148,12 @@ fn on_ball(
 }
 
 fn on_tip(
-    problem: &BallProblem,
+    stations: &[Station],
     flange_from_sensor: &Transform<Flange, Sensor>,
     touched_mm: Option<Vec3>,
 ) -> Result<Evaluation, NotEvaluated> {
     let mut measurements = Vec::new();
-    for station in &problem.stations {
+    for station in stations {
         let has_several = station.captures.len() > 1;
         for (capture_idx, capture) in station.captures.iter().enumerate() {
             let Some(tip_in_sensor) = capture.reading.point_in_sensor_mm() else { continue };

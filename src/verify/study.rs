@@ -187,6 +187,7 @@ impl Verification {
 fn stations(problem: &Problem) -> Vec<&Station> {
     match problem {
         Problem::Ball(ball) | Problem::Point(ball) => ball.stations.iter().collect(),
+        Problem::Motion(motion) => motion.stations.iter().collect(),
         Problem::Plate(plate) => plate.stations.iter().map(|at_plate| &at_plate.station).collect(),
     }
 }

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Holds the simulated cell, the exported tool frames and the import of ROS 2 bags against programs that others wrote.
+"""Holds the simulated cell, the exported tool frames, the import of ROS 2 bags and the errors of trajectories against programs
+that others wrote.
 
     python3 tests/clients/run.py target/debug/handeye [FOLDER]
 
 Makes a virtual environment in FOLDER (a temporary one if none is named), installs the clients of requirements.txt there,
-starts `handeye cell` for each protocol, runs checks.py, and runs tool_frames.py and ros_bags.py. Ends with 0 if all is well, 1 if a check failed or a cell did not
+starts `handeye cell` for each protocol, runs checks.py, and runs tool_frames.py, ros_bags.py and evo_check.py. Ends with 0 if all is well, 1 if a check failed or a cell did not
 start, and 3 with lines "skipped: ..." if something could not be checked: no clients, or no free ports.
 """
 
@@ -144,6 +145,7 @@ def main():
             check(python, program, "ur", "ljv", ["ur-receive", "ur-dashboard", "ur-script"], offsets=[0]),
             check_with("tool_frames.py", python, program),
             check_with("ros_bags.py", python, program),
+            check_with("evo_check.py", python, program),
         ]
     if False in outcomes:
         return 1

@@ -9,6 +9,7 @@ use crate::app::OnDisk;
 use crate::app::jobs::JobOutcome;
 use crate::session::format::{self, Stamp};
 use crate::session::{self, Session, SessionError, Target};
+use crate::text::sequence as words;
 
 use super::{Document, NoticeKind, Workbench};
 
@@ -171,8 +172,29 @@ impl Workbench {
         });
     }
 
+    /// A session's file, or the folder of an RGB-D sequence.
     pub(super) fn open_file(&mut self, path: PathBuf) {
-        self.start_loading(path, Purpose::Open);
+        if path.is_dir() {
+            self.open_sequence(&absolute(path));
+        } else {
+            self.start_loading(path, Purpose::Open);
+        }
+    }
+
+    /// The session of a sequence stands beside its folder and is called like it; where there is none, it is begun.
+    fn open_sequence(&mut self, folder: &Path) {
+        let Some(name) = folder.file_name().map(|name| name.to_string_lossy().into_owned()) else {
+            self.notify_of_opening(words::no_name(&folder.display().to_string()));
+            return;
+        };
+        let file = folder.with_file_name(format!("{name}.json"));
+        if file.exists() {
+            self.start_loading(file, Purpose::Open);
+            return;
+        }
+        let session = Session { name: name.clone(), ..Session::new(Target::Rgbd { sequence: name }) };
+        self.last_revision += 1;
+        self.put_on_bench(Document::new_unsaved(Arc::new(session), Some(file), self.last_revision));
     }
 
     pub(super) fn reload(&mut self) {

@@ -9,6 +9,7 @@ mod imports;
 mod keeping;
 pub mod reporting;
 pub mod scans;
+pub mod sequence;
 mod studies;
 mod verifying;
 
@@ -37,6 +38,7 @@ pub use self::imports::ImportDraft;
 use self::imports::Imports;
 use self::reporting::{Gathered, Reported};
 use self::scans::Scans;
+use self::sequence::SequenceBench;
 pub use self::studies::Results;
 use self::verifying::Added;
 
@@ -119,6 +121,7 @@ pub struct Workbench {
     imports: Imports,
     exporting: Slot<Exported>,
     scans: Scans,
+    sequence: SequenceBench,
     report: Study<Arc<Gathered>>,
     reporting: Slot<(Option<u64>, Reported)>,
     opening: Slot<Result<(), NotOpened>>,
@@ -162,6 +165,7 @@ impl Workbench {
             imports: Imports::default(),
             exporting: Slot::default(),
             scans: Scans::default(),
+            sequence: SequenceBench::default(),
             report: Study::default(),
             reporting: Slot::default(),
             opening: Slot::default(),
@@ -284,6 +288,7 @@ impl Workbench {
             || self.imports.is_busy()
             || self.exporting.is_running()
             || self.scans.is_busy()
+            || self.sequence.is_busy()
             || self.report.is_running()
             || self.reporting.is_running()
             || self.opening.is_running()
@@ -337,6 +342,7 @@ impl Workbench {
             Command::AddFurther(path) => self.start_adding_further(path),
             Command::GiveCalibration(calibration) => self.give_calibration(*calibration),
             Command::WithdrawCalibration(name) => self.withdraw_calibration(&name),
+            Command::Sequence(command) => self.command_sequence(command),
             Command::CompareCalibrations(sides) => self.compare_calibrations(*sides),
             Command::CancelComparison => self.comparison.cancel(),
             Command::ReadResultHistory(folder) => self.read_result_history(folder),
@@ -369,6 +375,8 @@ impl Workbench {
             self.take_look(&outcome);
         }
         changed |= self.take_news_of_recovery();
+        // Before what was solved of it.
+        changed |= self.poll_sequence();
         if let Some(outcome) = self.solving.poll() {
             changed = true;
             match outcome {

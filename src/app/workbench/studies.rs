@@ -7,7 +7,7 @@ use crate::calibrate::validation::bootstrap;
 use crate::calibrate::{BallProblem, Method, MethodResult, Problem, best_available};
 use crate::diagnose;
 use crate::plan::{Limits, PlanRefusal, next_stations};
-use crate::session::{Measured, Session, measure, problem};
+use crate::session::{Measured, Session, Target, measure, problem};
 use crate::watch::Cancelled;
 
 use super::Workbench;
@@ -45,6 +45,7 @@ impl Results {
 impl Workbench {
     pub(super) fn forget_results(&mut self) {
         self.forget_scans();
+        self.forget_sequence();
         self.results = None;
         self.diagnosis.clear();
         self.plan.clear();
@@ -76,6 +77,11 @@ impl Workbench {
         let Some(document) = &self.document else { return };
         let session = Arc::clone(&document.session);
         let revision = document.revision;
+        if let Target::Rgbd { sequence } = &session.target {
+            let path = document.path.clone();
+            self.start_tracking(&session, sequence, path.as_deref(), revision);
+            return;
+        }
         let previous = self.results.as_ref().map(|results| Arc::clone(&results.measured));
         self.solving.start("solve", &self.wake, move |watch| {
             let start = Instant::now();

@@ -120,6 +120,7 @@ impl Found<'_> {
             radius: self.radius,
             reduced: Some(reduced),
             plate: None,
+            motion: None,
             change_by_radius,
             workspace_point_by_radius,
         })

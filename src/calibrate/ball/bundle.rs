@@ -119,7 +119,7 @@ fn used_profiles<'a>(stations: &[&'a Station], problem: &BallProblem) -> Vec<Use
         stations.iter().enumerate().flat_map(|(station_idx, station)| {
             station.captures.iter().filter_map(move |capture| match &capture.reading {
                 Reading::Arc(arc) => Some((station_idx, capture.base_from_flange.rigid(), arc.as_ref())),
-                Reading::Edge(_) | Reading::Refused(_) | Reading::Point(_) => None,
+                Reading::Edge(_) | Reading::Refused(_) | Reading::Point(_) | Reading::Pose(_) => None,
             })
         })
     };

@@ -137,7 +137,7 @@ fn section<'a>(problem: &BallProblem, station: &'a Station, warnings: &mut Vec<W
             },
             std_mm: None,
         }),
-        Reading::Edge(_) | Reading::Refused(_) => {
+        Reading::Edge(_) | Reading::Refused(_) | Reading::Pose(_) => {
             warnings.push(Warning::StationSkipped { label: station.label.clone(), found: 0, needed: 1 });
             None
         }

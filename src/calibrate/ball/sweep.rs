@@ -98,7 +98,7 @@ fn steps(station: &Station, mount: Mount) -> Vec<SweepStep<'_>> {
                     commanded_mm: capture.commanded_travel_mm,
                 })
             }
-            Reading::Edge(_) | Reading::Refused(_) | Reading::Point(_) => None,
+            Reading::Edge(_) | Reading::Refused(_) | Reading::Point(_) | Reading::Pose(_) => None,
         })
         .collect()
 }

@@ -119,6 +119,7 @@ impl Found<'_> {
             uncertainty,
             stations: Vec::new(),
             plate: Some(PlateFound { base_from_plate: state.base_from_plate, points, starts: self.starts, reduced }),
+            motion: None,
             rotation_span_rad: span,
             warnings: self.warnings,
             num_iterations,

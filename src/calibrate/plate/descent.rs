@@ -12,7 +12,7 @@ const SETTLED: f64 = 1e-13;
 /// A step below this that lowers nothing is one in the rounding.
 const IN_ROUNDING: f64 = 1e-8;
 /// Steps in mm count as rad at this lever.
-pub(super) const LEVER_MM: f64 = 100.0;
+pub(crate) const LEVER_MM: f64 = 100.0;
 /// Damping of the first step.
 const FIRST_DAMPING: f64 = 1e-4;
 /// With more damping than this no step is left.
@@ -71,9 +71,23 @@ pub fn descend<const N: usize, U: Unknowns<N>>(
     sums_at: impl Fn(&U) -> Sums<N>,
     start: U,
 ) -> Result<Descent<N, U>, SolveError> {
+    descend_from(sums_at, start, FIRST_DAMPING, SETTLED)
+}
+
+/// The same with the damping of the first step, which is above zero, and ending at a step below `settled` (rad, mm/100): near
+/// the minimum hardly any damping saves steps.
+///
+/// # Errors
+/// As [`descend`].
+pub fn descend_from<const N: usize, U: Unknowns<N>>(
+    sums_at: impl Fn(&U) -> Sums<N>,
+    start: U,
+    first_damping: f64,
+    settled: f64,
+) -> Result<Descent<N, U>, SolveError> {
     let mut unknowns = start;
     let mut sums = sums_at(&start);
-    let mut damping = FIRST_DAMPING;
+    let mut damping = first_damping;
     for iteration in 1..=MAX_ITERATIONS {
         let Some(step) = damped_step(&sums, damping) else {
             damping *= 10.0;
@@ -90,7 +104,7 @@ pub fn descend<const N: usize, U: Unknowns<N>>(
             (unknowns, sums) = (trial, trial_sums);
             damping *= 0.1;
         }
-        if size <= SETTLED || (!falls && size < IN_ROUNDING) || damping > MAX_DAMPING {
+        if size <= settled || (!falls && size < IN_ROUNDING) || damping > MAX_DAMPING {
             return Ok(Descent { unknowns, sums, num_iterations: iteration, converged: size < IN_ROUNDING });
         }
         if !falls {

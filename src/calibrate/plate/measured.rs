@@ -59,7 +59,7 @@ pub(super) fn measured(problem: &PlateProblem) -> Result<(Vec<Measured<'_>>, Pos
         let refusal = problem.stations.iter().flat_map(|station| &station.station.captures).find_map(|capture| {
             match &capture.reading {
                 Reading::Refused(refusal) => Some(refusal.clone()),
-                Reading::Arc(_) | Reading::Edge(_) | Reading::Point(_) => None,
+                Reading::Arc(_) | Reading::Edge(_) | Reading::Point(_) | Reading::Pose(_) => None,
             }
         });
         return Err(SolveError::TooFewEdgePoints { found_p, found_q, needed: MIN_POINTS, refusal });
@@ -88,7 +88,7 @@ impl<'a> Read<'a> {
         let point = capture.reading.point_in_sensor_mm()?;
         let edge = match &capture.reading {
             Reading::Edge(edge) => Some(edge.as_ref()),
-            Reading::Arc(_) | Reading::Refused(_) | Reading::Point(_) => None,
+            Reading::Arc(_) | Reading::Refused(_) | Reading::Point(_) | Reading::Pose(_) => None,
         };
         Some(Self { capture_idx, base_from_flange: *capture.base_from_flange.rigid(), point, edge })
     }

@@ -11,7 +11,6 @@ pub mod points;
 
 mod assemble;
 mod bundle;
-mod components;
 mod measured;
 mod noise;
 mod refit;

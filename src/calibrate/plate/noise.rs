@@ -6,11 +6,11 @@
 
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
+use crate::calibrate::components::{Components, Found, NUM_COMPONENTS, PointModel};
 use crate::calibrate::{AboveStated, Mount, NoiseModel, PlateProblem, SolveError};
 use crate::geometry::so3::hat;
 use crate::geometry::{Mat3, Rigid, Vec3, stats};
 
-use super::components::{Components, Found, NUM_COMPONENTS, PointModel};
 use super::measured::Measured;
 use super::points::{EdgePoint, NUM_UNKNOWNS, PlateState};
 
@@ -148,7 +148,7 @@ impl PlateNoise {
     ///
     /// Points taken at one reported pose share its error. With that error's variance times their number each, they weigh
     /// together as their mean does.
-    fn model_of(&self, measured: &Measured, state: &PlateState) -> PointModel {
+    fn model_of(&self, measured: &Measured, state: &PlateState) -> PointModel<2, NUM_UNKNOWNS> {
         let point = &measured.point;
         let across = state.across_in_base(point.edge);
         let of_sensor = across * point.base_from_sensor(&state.flange_from_sensor);
@@ -171,7 +171,7 @@ impl PlateNoise {
         for ((part, is_open), open) in parts.into_iter().zip(is_open).zip(&mut open) {
             *(if is_open { open } else { &mut known }) += part;
         }
-        PointModel { off_edge: state.off_edge(point), by_unknowns: state.by_unknowns(point), known, open }
+        PointModel { residual: state.off_edge(point), by_unknowns: state.by_unknowns(point), known, open }
     }
 }
 

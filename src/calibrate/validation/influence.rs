@@ -2,11 +2,12 @@
 
 use nalgebra::SMatrix;
 
+use crate::calibrate::motion::{MotionRefit, MotionState};
 use crate::calibrate::observation::{NUM_UNKNOWNS, State};
 use crate::calibrate::plate::PlateRefit;
 use crate::calibrate::reduced::Reduced;
 use crate::calibrate::solver::{Hessian, covariance_for_unit_noise};
-use crate::calibrate::{PlateFound, Solution};
+use crate::calibrate::{MotionFound, PlateFound, Solution};
 use crate::geometry::so3::hat;
 use crate::geometry::{Mat3, Vec3, stats};
 
@@ -32,10 +33,11 @@ pub struct Influence {
 /// One entry a station; `None` where nothing can be left out.
 pub(super) fn influence(solution: &Solution) -> Option<Vec<Influence>> {
     let reference_point = solution.uncertainty.as_ref()?.reference_point_in_sensor_mm;
-    match (&solution.reduced, &solution.plate) {
-        (Some(reduced), _) => of_stations(solution, reduced, reference_point),
-        (None, Some(plate)) => of_plate(plate, reference_point),
-        (None, None) => None,
+    match (&solution.reduced, &solution.plate, &solution.motion) {
+        (Some(reduced), _, _) => of_stations(solution, reduced, reference_point),
+        (None, Some(plate), _) => of_plate(plate, reference_point),
+        (None, None, Some(motion)) => of_motion(solution, motion, reference_point),
+        (None, None, None) => None,
     }
 }
 
@@ -77,6 +79,34 @@ fn of_plate(plate: &PlateFound, reference_point: Vec3) -> Option<Vec<Influence>>
             let off = refit.state.off_edge(point);
             chi_square += off.dot(&(expected.try_inverse()? * off));
             freedom += 2.0;
+        }
+        Some(Influence {
+            station_idx: named.station_idx,
+            label: named.label.clone(),
+            studentised_residual: (chi_square / freedom).sqrt(),
+            p_value: stats::chi_squared_p_value(chi_square, freedom),
+            moves_workspace_point_mm: (workspace_point(&refit.state.flange_from_sensor, reference_point) - here).norm(),
+        })
+    };
+    reduced.without_each().into_iter().enumerate().map(of_station).collect()
+}
+
+/// The same for a target's poses: each pose of a station against the solution made without it.
+fn of_motion(solution: &Solution, motion: &MotionFound, reference_point: Vec3) -> Option<Vec<Influence>> {
+    let reduced = motion.reduced.as_ref()?;
+    let here = workspace_point(&reduced.state.flange_from_sensor, reference_point);
+    let of_station = |(station, refit): (usize, Option<MotionRefit>)| {
+        let refit = refit?;
+        let named = solution.stations.get(station)?;
+        let (mut chi_square, mut freedom) = (0.0, 0.0);
+        for pose in reduced.poses.iter().filter(|pose| pose.station == station) {
+            let errors = refit.state.errors(pose);
+            let by_unknowns = MotionState::by_unknowns(pose, &errors);
+            let expected =
+                by_unknowns * refit.covariance * by_unknowns.transpose() + pose.information.matrix().try_inverse()?;
+            let off = errors.vector();
+            chi_square += off.dot(&(expected.try_inverse()? * off));
+            freedom += 6.0;
         }
         Some(Influence {
             station_idx: named.station_idx,

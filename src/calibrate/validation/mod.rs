@@ -18,7 +18,7 @@ use nalgebra::Matrix6;
 use crate::geometry::{Rigid, Vec3};
 
 use super::solver::{covariance_for_unit_noise, sensor_block};
-use super::{PlateReduced, Reduced, Solution, plate};
+use super::{MotionReduced, PlateReduced, Reduced, Solution, motion, plate};
 
 /// How much a solution can be relied on, beyond its residual and its σ.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,6 +51,7 @@ fn workspace_point(flange_from_sensor: &Rigid, reference_point_in_sensor_mm: Vec
 enum Data<'a> {
     Points(&'a Reduced),
     Plate(&'a PlateReduced),
+    Motion(&'a MotionReduced),
 }
 
 /// A calibration from some of the stations, and the covariance of (rotation, translation), a right perturbation along the
@@ -63,13 +64,15 @@ struct Again {
 impl<'a> Data<'a> {
     fn of(solution: &'a Solution) -> Option<Self> {
         let of_plate = || solution.plate.as_ref().map(|plate| Self::Plate(&plate.reduced));
-        solution.reduced.as_ref().map(Self::Points).or_else(of_plate)
+        let of_motion = || solution.motion.as_ref().and_then(|motion| motion.reduced.as_ref()).map(Self::Motion);
+        solution.reduced.as_ref().map(Self::Points).or_else(of_plate).or_else(of_motion)
     }
 
     const fn num_stations(self) -> usize {
         match self {
             Self::Points(reduced) => reduced.num_stations,
             Self::Plate(reduced) => reduced.num_stations,
+            Self::Motion(reduced) => reduced.num_stations,
         }
     }
 
@@ -89,6 +92,13 @@ impl<'a> Data<'a> {
                 Some(Again {
                     flange_from_sensor: refit.state.flange_from_sensor,
                     covariance: plate::points::sensor_block(&refit.covariance),
+                })
+            }
+            Self::Motion(reduced) => {
+                let refit = reduced.solve_with_times(times).ok()?;
+                Some(Again {
+                    flange_from_sensor: refit.state.flange_from_sensor,
+                    covariance: motion::pose::sensor_block(&refit.covariance),
                 })
             }
         }

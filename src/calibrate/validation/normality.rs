@@ -6,8 +6,10 @@
 
 use crate::calibrate::observation::CentreObservation;
 use crate::calibrate::reduced::Reduced;
-use crate::calibrate::{PlateReduced, Solution};
+use crate::calibrate::{MotionReduced, PlateReduced, Solution};
 use crate::geometry::{Mat3, Vec3, stats};
+
+use super::Data;
 
 /// With fewer residuals a test says nothing.
 const MIN_RESIDUALS: usize = 20;
@@ -23,10 +25,10 @@ pub struct Normality {
 
 /// `None` with too few residuals, or if they are exactly zero.
 pub(super) fn normality(solution: &Solution) -> Option<Normality> {
-    let mut residuals = match (&solution.reduced, &solution.plate) {
-        (Some(reduced), _) => whitened_residuals(reduced),
-        (None, Some(plate)) => whitened_distances(&plate.reduced),
-        (None, None) => return None,
+    let mut residuals = match Data::of(solution)? {
+        Data::Points(reduced) => whitened_residuals(reduced),
+        Data::Plate(reduced) => whitened_distances(reduced),
+        Data::Motion(reduced) => whitened_errors(reduced),
     };
     if residuals.len() < MIN_RESIDUALS {
         return None;
@@ -73,6 +75,15 @@ fn whitened_distances(reduced: &PlateReduced) -> Vec<f64> {
         Some([whitened.x, whitened.y])
     });
     whitened.flatten().collect()
+}
+
+/// The errors of a target's poses, along six directions each, over their σ.
+fn whitened_errors(reduced: &MotionReduced) -> Vec<f64> {
+    let whitened = reduced.poses.iter().filter_map(|pose| {
+        let factor = pose.information.matrix().cholesky()?;
+        Some(factor.l().transpose() * reduced.state.errors(pose).vector())
+    });
+    whitened.flat_map(<[f64; 6]>::from).collect()
 }
 
 /// The likeliest shift that all captures of a station share.

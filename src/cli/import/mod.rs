@@ -9,6 +9,7 @@ use std::process::ExitCode;
 
 use clap::ValueEnum;
 
+use crate::calibrate::Mount;
 use crate::geometry::notation::{AngleUnit, LengthUnit, OrientationForm};
 use crate::geometry::{PoseConvention, PoseNotation, Tcp, Transform};
 use crate::session::import::{
@@ -44,12 +45,16 @@ pub struct ImportArgs {
     /// The session's name; the first file's if none is given.
     #[arg(long)]
     pub name: Option<String>,
-    /// What was measured; if nothing is said a plate where the poses have an edge each, else a ball.
+    /// What was measured; if nothing is said a plate where the poses have an edge each, a pose where they have the
+    /// target's, else a ball.
     #[arg(long, value_enum)]
     pub target: Option<TargetArg>,
     /// The ball's radius, mm.
     #[arg(long)]
     pub radius_mm: Option<f64>,
+    /// The sensor stands beside the robot, and the target is on the flange.
+    #[arg(long, conflicts_with = "append_to")]
+    pub fixed: bool,
     /// How the input is to be read.
     #[command(flatten)]
     pub reading: ReadingArgs,
@@ -70,8 +75,8 @@ pub struct ReadingArgs {
     /// 1,5 is one and a half.
     #[arg(long)]
     pub decimal_comma: bool,
-    /// What the columns are: x,y,z,a,b,c (angles) or q1,q2,q3,q4, px,py,pz, label, side, edge, use, step, profile,
-    /// notation, - for none.
+    /// What the columns are: x,y,z,a,b,c (angles) or q1,q2,q3,q4, px,py,pz, tx,ty,tz and t1 to t4 (the target's
+    /// pose), label, side, edge, use, step, profile, notation, - for none.
     #[arg(long, value_parser = columns, value_name = "LIST")]
     pub columns: Option<Columns>,
     /// How three angles are written, as `pose_convention` of session files, e.g. kuka-abc.
@@ -114,6 +119,8 @@ pub enum TargetArg {
     Point,
     /// A part that was scanned.
     Workpiece,
+    /// A marker or board whose whole pose was seen.
+    Pose,
 }
 
 /// What a file is.
@@ -130,6 +137,7 @@ pub enum KindArg {
     Profile,
     ProfileColumns,
     Yaml,
+    PosePairs,
 }
 
 /// What separates the cells.
@@ -208,6 +216,13 @@ fn columns(list: &str) -> Result<Columns, String> {
             "px" => Role::Point(0),
             "py" => Role::Point(1),
             "pz" => Role::Point(2),
+            "tx" => Role::Target(0),
+            "ty" => Role::Target(1),
+            "tz" => Role::Target(2),
+            "t1" => Role::Target(3),
+            "t2" => Role::Target(4),
+            "t3" => Role::Target(5),
+            "t4" => Role::Target(6),
             "label" => Role::Label,
             "side" => Role::Side,
             "edge" => Role::Edge,
@@ -217,7 +232,7 @@ fn columns(list: &str) -> Result<Columns, String> {
             "notation" => Role::Notation,
             other => {
                 return Err(format!(
-                    "found {other}, expected x, y, z, a, b, c, q1 to q4, px, py, pz, label, side, edge, use, step, profile, notation or -"
+                    "found {other}, expected x, y, z, a, b, c, q1 to q4, px, py, pz, tx, ty, tz, t1 to t4, label, side, edge, use, step, profile, notation or -"
                 ));
             }
         })
@@ -254,6 +269,7 @@ impl ReadingArgs {
                 KindArg::Profile => Kind::Profile,
                 KindArg::ProfileColumns => Kind::ProfileColumns,
                 KindArg::Yaml => Kind::Yaml,
+                KindArg::PosePairs => Kind::PosePairs,
             }),
             separator: self.separator.map(Separator::from),
             decimal_comma: self.decimal_comma.then_some(true),
@@ -409,21 +425,28 @@ fn listing(imported: &Imported) -> String {
 }
 
 fn session(args: &ImportArgs, sources: &[Source], imported: Imported) -> Result<Session, String> {
+    let session = session_as_read(args, sources, imported)?;
+    Ok(if args.fixed { Session { mount: Mount::Fixed, ..session } } else { session })
+}
+
+fn session_as_read(args: &ImportArgs, sources: &[Source], imported: Imported) -> Result<Session, String> {
     if let Some(path) = &args.append_to {
         let session = load(path).map_err(|error| error.to_string())?;
         return with_stations(&session, imported.stations).map_err(|refusal| refusal.to_string());
     }
     let target = match (args.target, args.radius_mm) {
         (None | Some(TargetArg::Ball), Some(radius_mm)) => Some(Target::ball(radius_mm)),
-        (Some(TargetArg::Plate | TargetArg::Point | TargetArg::Workpiece), Some(_)) => {
+        (Some(TargetArg::Plate | TargetArg::Point | TargetArg::Workpiece | TargetArg::Pose), Some(_)) => {
             return Err(text::RADIUS_OF_NO_BALL.to_owned());
         }
         (Some(TargetArg::Plate), None) => Some(Target::RightAnglePlate),
         (Some(TargetArg::Point), None) => Some(Target::Point),
         (Some(TargetArg::Workpiece), None) => Some(Target::Workpiece),
+        (Some(TargetArg::Pose), None) => Some(Target::pose()),
         // A session says itself what was measured.
         (None, None) if imported.session.is_some() => None,
-        // Nothing else has edges.
+        // Nothing else has whole poses, and nothing else edges.
+        (None, None) if imported.has_target_poses() => Some(Target::pose()),
         (None, None) if imported.has_edges() => Some(Target::RightAnglePlate),
         (None | Some(TargetArg::Ball), None) => return Err(text::RADIUS_MISSING.to_owned()),
     };

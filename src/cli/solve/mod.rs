@@ -1,7 +1,6 @@
 //! `handeye solve`: every method that the session's data allows, as a table or as the result file.
 
 use std::fmt::Write as _;
-use std::io::IsTerminal as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -16,8 +15,8 @@ use crate::report::result_file::{Examination, result_file};
 use crate::session::{self, Session, measure};
 use crate::text::cli::no_such_station;
 use crate::text::diagnosis::first_finding;
-use crate::watch::{Cancelled, Watch};
 
+use super::progress::watched;
 use super::{EXIT_NOTHING_COMPUTED, EXIT_WRONG_INPUT, fail};
 
 mod diagnosis;
@@ -59,36 +58,6 @@ pub struct SolveArgs {
 fn method_parser() -> impl TypedValueParser<Value = Method> {
     PossibleValuesParser::new(Method::ALL.map(Method::id))
         .try_map(|id| Method::by_id(&id).ok_or_else(|| format!("no method is called {id}")))
-}
-
-/// Shows progress on a terminal and nowhere else.
-struct TerminalProgress {
-    what: &'static str,
-    is_terminal: bool,
-    shown: bool,
-}
-
-impl TerminalProgress {
-    fn new(what: &'static str) -> Self {
-        Self { what, is_terminal: std::io::stderr().is_terminal(), shown: false }
-    }
-
-    fn clear(&mut self) {
-        if self.shown {
-            eprint!("\r\x1b[K");
-            self.shown = false;
-        }
-    }
-}
-
-impl Watch for TerminalProgress {
-    fn report(&mut self, done: usize, total: usize) -> Result<(), Cancelled> {
-        if self.is_terminal {
-            eprint!("\r{} {done}/{total}\x1b[K", self.what);
-            self.shown = true;
-        }
-        Ok(())
-    }
 }
 
 /// Runs the command.
@@ -152,17 +121,6 @@ impl Found {
     const fn examination(&self) -> Examination<'_> {
         Examination { bootstrap: self.bootstrap.as_ref(), ..self.examined.examination() }
     }
-}
-
-/// Does something with its progress shown on a terminal.
-fn watched<T>(
-    what: &'static str,
-    job: impl FnOnce(&mut TerminalProgress) -> Result<T, Cancelled>,
-) -> Result<T, String> {
-    let mut progress = TerminalProgress::new(what);
-    let outcome = job(&mut progress);
-    progress.clear();
-    outcome.map_err(|cancelled| cancelled.to_string())
 }
 
 /// Prints, and says so if no method gave a result.

@@ -46,7 +46,15 @@ fn method_table(out: &mut String, session: &Session, solution: &Solution) {
             let (in_sensor_mm, in_base_mm) = (station.target_in_sensor_mm, station.target_in_base_mm);
             (station.label.as_str(), station.station_idx, in_sensor_mm, in_base_mm, station.error_from_first_mm)
         });
-        (if solution.method == Method::FixedPoint { "tip" } else { "ball" }, "error", rows.collect())
+        (
+            match solution.method {
+                Method::FixedPoint => "tip",
+                Method::Motion => "target",
+                _ => "ball",
+            },
+            "error",
+            rows.collect(),
+        )
     };
     writeln!(
         out,

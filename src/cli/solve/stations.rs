@@ -2,9 +2,10 @@
 
 use std::fmt::Write as _;
 
-use crate::calibrate::{Method, Mount, PlateFound, Solution, StationSolution};
+use crate::calibrate::{Method, MotionFound, Mount, PlateFound, Solution, StationSolution};
 use crate::geometry::Vec3;
 use crate::report::digits::{decimals_for, fixed, signed};
+use crate::text::closed_form_name;
 
 /// The table. Writing to a string does not fail, hence the `ok()`s.
 pub fn stations(out: &mut String, solution: &Solution) {
@@ -14,8 +15,12 @@ pub fn stations(out: &mut String, solution: &Solution) {
             let std_mm = solution.uncertainty.as_ref().map(|known| known.workspace_point_std_mm);
             points(out, plate, frame, decimals_for(std_mm));
         }
-        None if solution.method == Method::FixedPoint => tips(out, &solution.stations, frame),
+        None if solution.method == Method::FixedPoint => places_of(out, "tip", &solution.stations, frame),
+        None if solution.method == Method::Motion => places_of(out, "target", &solution.stations, frame),
         None => balls(out, &solution.stations, frame),
+    }
+    if let Some(motion) = &solution.motion {
+        closed_forms(out, motion);
     }
 }
 
@@ -39,11 +44,13 @@ fn balls(out: &mut String, stations: &[StationSolution], frame: &str) {
     }
 }
 
-fn tips(out: &mut String, stations: &[StationSolution], frame: &str) {
+/// Of targets that have no side.
+fn places_of(out: &mut String, target: &str, stations: &[StationSolution], frame: &str) {
     writeln!(
         out,
-        "  station       tip in sensor / mm         {:^29}    error from first / mm    left out",
-        format!("tip in {frame} / mm")
+        "  station  {:^29}  {:^29}    error from first / mm    left out",
+        format!("{target} in sensor / mm"),
+        format!("{target} in {frame} / mm")
     )
     .ok();
     for station in stations {
@@ -62,6 +69,26 @@ fn places(station: &StationSolution) -> String {
         signed(error.z, 3),
         left_out(station.leave_one_out_mm),
     )
+}
+
+/// What the published closed forms make of the same data.
+fn closed_forms(out: &mut String, motion: &MotionFound) {
+    writeln!(out, "  closed forms beside it        off by / mm       / °    residual / mm       / °").ok();
+    for closed_form in &motion.closed_forms {
+        let name = closed_form_name(closed_form.form);
+        match &closed_form.answer {
+            Some(answer) => writeln!(
+                out,
+                "  {name:<28} {:>12} {:>9} {:>16} {:>9}",
+                fixed(answer.off_mm, 3),
+                fixed(answer.off_rad.to_degrees(), 4),
+                fixed(answer.residual_mm, 3),
+                fixed(answer.residual_rad.to_degrees(), 4),
+            ),
+            None => writeln!(out, "  {name:<28} {:>12}", "–"),
+        }
+        .ok();
+    }
 }
 
 fn points(out: &mut String, plate: &PlateFound, frame: &str, decimals: usize) {

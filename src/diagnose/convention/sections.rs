@@ -71,7 +71,7 @@ fn section(session: &Session, station: &Station, ball_radius_mm: f64) -> Option<
         .enumerate()
         .filter_map(|(idx, capture)| match &capture.reading {
             Reading::Arc(arc) => Some((idx, &**arc)),
-            Reading::Edge(_) | Reading::Refused(_) | Reading::Point(_) => None,
+            Reading::Edge(_) | Reading::Refused(_) | Reading::Point(_) | Reading::Pose(_) => None,
         })
         .collect();
     let positions: Vec<Vec3> = session.stations[station.idx]

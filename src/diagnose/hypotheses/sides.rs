@@ -126,7 +126,7 @@ fn arcs_bulge_away(problem: &BallProblem) -> bool {
         .flat_map(|station| &station.captures)
         .filter_map(|capture| match &capture.reading {
             Reading::Arc(arc) => Some(arc),
-            Reading::Edge(_) | Reading::Refused(_) | Reading::Point(_) => None,
+            Reading::Edge(_) | Reading::Refused(_) | Reading::Point(_) | Reading::Pose(_) => None,
         })
         .peekable();
     arcs.peek().is_some()

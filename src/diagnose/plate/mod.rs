@@ -65,11 +65,11 @@ pub(super) fn examine(
     Ok(Diagnosis { findings, readings: ranking, validation })
 }
 
-fn plain(fault: Fault, severity: Severity) -> Finding {
+pub(super) fn plain(fault: Fault, severity: Severity) -> Finding {
     Finding { fault, severity, explains: 1.0, evidence: Evidence::default(), remedy: None }
 }
 
-fn of_warning(warning: &Warning) -> Finding {
+pub(super) fn of_warning(warning: &Warning) -> Finding {
     let severity = if warning.casts_doubt() { Severity::Doubtful } else { Severity::Note };
     let fault = match warning {
         Warning::LittleRotation { span_deg, recommended_deg } => {
@@ -83,7 +83,7 @@ fn of_warning(warning: &Warning) -> Finding {
     plain(fault, severity)
 }
 
-fn of_error(error: &SolveError) -> Finding {
+pub(super) fn of_error(error: &SolveError) -> Finding {
     let fault = match error {
         SolveError::NoRotation { span_deg } => Fault::NoRotation { span_deg: *span_deg },
         SolveError::RotationsAboutOneAxis { axis_x, axis_y, axis_z } => {

@@ -34,6 +34,7 @@ fn session() -> Session {
             flange_from_sensor: Transform::identity(),
             target_in_base_mm: Vec3::zeros(),
             base_from_plate: None,
+            base_from_target: None,
             unknown: UnknownFields::new(),
         }),
         unknown: UnknownFields::new(),
@@ -92,6 +93,7 @@ fn solution(method: Method, shift_mm: f64, errors_mm: &[Vec3]) -> Solution {
             variance_factor: None,
         }),
         plate: None,
+        motion: None,
         change_by_radius: Vector6::zeros(),
         workspace_point_by_radius: Vec3::zeros(),
     }

@@ -46,6 +46,7 @@ pub const fn method_color(method: Method) -> Rgb {
         Method::BallMaxArc => Rgb(0xd9, 0x7a, 0x00),
         Method::BallBundle | Method::PlateBundle => Rgb(0x00, 0x9e, 0x73),
         Method::PlateOrthogonal => Rgb(0xcc, 0x79, 0xa7),
+        Method::Motion => Rgb(0x56, 0x5f, 0xc4),
     }
 }
 
@@ -75,7 +76,7 @@ pub const fn method_marker(method: Method) -> Marker {
         Method::BallMaxArcStep => Marker::Down,
         Method::BallMaxArc => Marker::Up,
         Method::BallBundle | Method::PlateBundle => Marker::Square,
-        Method::PlateOrthogonal => Marker::Diamond,
+        Method::PlateOrthogonal | Method::Motion => Marker::Diamond,
     }
 }
 
@@ -87,7 +88,7 @@ pub const fn method_symbol(method: Method) -> &'static str {
         Method::BallMaxArcStep => "▽",
         Method::BallMaxArc => "▲",
         Method::BallBundle | Method::PlateBundle => "■",
-        Method::PlateOrthogonal => "◆",
+        Method::PlateOrthogonal | Method::Motion => "◆",
     }
 }
 

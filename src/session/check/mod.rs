@@ -64,7 +64,7 @@ fn missing_stations(target: &Target, stations: &[Station]) -> Vec<Finding> {
     let num_enabled =
         |is_counted: &dyn Fn(&Station) -> bool| stations.iter().filter(|s| s.enabled && is_counted(s)).count();
     match target {
-        Target::Ball { .. } | Target::Point => {
+        Target::Ball { .. } | Target::Point | Target::Pose { .. } => {
             let num_enabled = num_enabled(&|_| true);
             let is_few = num_enabled < MIN_STATIONS;
             is_few.then_some(Finding::FewStations { num_enabled, needed: MIN_STATIONS }).into_iter().collect()
@@ -142,7 +142,7 @@ fn empty_profiles(station: &Station) -> impl Iterator<Item = Finding> + '_ {
 fn outside_plane(station: &Station) -> Option<Finding> {
     let y_mm = |capture: &Capture| match &capture.reading {
         Reading::Point(point) => Some(point.y),
-        Reading::Profile(_) => None,
+        Reading::Profile(_) | Reading::Pose(_) => None,
     };
     (station.captures.iter().enumerate())
         .filter_map(|(capture_idx, capture)| Some((capture_idx, y_mm(capture)?)))

@@ -37,7 +37,7 @@ fn set_target(session: &mut Session, target: &Target) -> Result<(), EditRefusal>
     match target {
         Target::RightAnglePlate => session.stations.iter_mut().for_each(need_edge),
         Target::Rgbd { .. } if !session.stations.is_empty() => return Err(EditRefusal::NoStationsHere),
-        Target::Ball { .. } | Target::Point | Target::Workpiece | Target::Rgbd { .. } => {}
+        Target::Ball { .. } | Target::Point | Target::Pose { .. } | Target::Workpiece | Target::Rgbd { .. } => {}
     }
     if std::mem::discriminant(target) != std::mem::discriminant(&session.target) {
         // The truth and what is known were of the other kind, and so was what else the file said of it.
@@ -60,6 +60,10 @@ pub(super) fn check_target(target: &Target) -> Result<(), EditRefusal> {
         Target::Rgbd { sequence } if sequence.trim().is_empty() || Path::new(sequence).is_absolute() => {
             Err(EditRefusal::NotASequence { found: sequence.clone() })
         }
+        Target::Pose { translation_std_mm, rotation_std_deg } => {
+            translation_std_mm.map_or(Ok(()), |std| within(std, &limits::LENGTH_STD_MM))?;
+            rotation_std_deg.map_or(Ok(()), |std| within(std, &limits::ORIENTATION_STD_DEG))
+        }
         Target::RightAnglePlate | Target::Point | Target::Workpiece | Target::Rgbd { .. } => Ok(()),
     }
 }
@@ -78,7 +82,7 @@ pub(super) fn check_known(known: &Known, target: &Target) -> Result<(), EditRefu
     let needed = match target {
         Target::Point => "touched_in_base_mm or nothing",
         Target::Workpiece => "angle_deg, pitch_mm, height_mm, diameter_mm or nothing",
-        Target::Ball { .. } | Target::RightAnglePlate | Target::Rgbd { .. } => "nothing",
+        Target::Ball { .. } | Target::RightAnglePlate | Target::Pose { .. } | Target::Rgbd { .. } => "nothing",
     };
     let sizes = [
         ("angle_deg", angle_deg, &limits::PLANE_ANGLE_DEG),

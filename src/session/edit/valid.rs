@@ -30,6 +30,7 @@ pub(super) fn check_label(label: &str) -> Result<(), EditRefusal> {
 pub(super) fn check_reading(reading: &Reading) -> Result<(), EditRefusal> {
     match reading {
         Reading::Point(point_in_sensor) => all_within(point_in_sensor, &limits::POINT_MM),
+        Reading::Pose(sensor_from_target) => all_within(&sensor_from_target.translation_mm(), &limits::POSITION_MM),
         Reading::Profile(_) => Ok(()),
     }
 }

@@ -9,6 +9,7 @@ pub(super) const FORMAT: &str = "handeye-session";
 pub(super) const BALL: &str = "ball";
 pub(super) const RIGHT_ANGLE_PLATE: &str = "right-angle-plate";
 pub(super) const POINT: &str = "point";
+pub(super) const POSE_TARGET: &str = "pose";
 pub(super) const WORKPIECE: &str = "workpiece";
 pub(super) const RGBD: &str = "rgbd";
 pub(super) const ON_FLANGE: &str = "on-flange";
@@ -36,7 +37,7 @@ pub(super) const ROBOT: &[&str] =
 pub(super) const NOTATION: &[&str] = &["orientation", "angle_unit", "length_unit", "flange_from_tcp", "inverse"];
 pub(super) const SENSOR: &[&str] = &["model", "profile_std_mm", "reference_distance_mm", "rough_flange_from_sensor"];
 pub(super) const STATION: &[&str] = &["label", "enabled", "side", "edge", "captures"];
-pub(super) const CAPTURE: &[&str] = &["base_from_flange", "profile", "point_mm", "step"];
+pub(super) const CAPTURE: &[&str] = &["base_from_flange", "profile", "point_mm", "sensor_from_target", "step"];
 pub(super) const PROFILE: &[&str] = &["x_mm", "z_mm"];
 pub(super) const POSE: &[&str] = &["translation_mm", "quaternion_wxyz", "euler_deg", "convention", "written"];
 pub(super) const WRITTEN: &[&str] = &["euler_deg", "convention"];
@@ -61,13 +62,16 @@ impl ByMount {
 pub(super) const TRUE_SENSOR: ByMount = ByMount { on_flange: "flange_from_sensor", fixed: "base_from_sensor" };
 pub(super) const TRUE_BALL: ByMount = ByMount { on_flange: "ball_in_base_mm", fixed: "ball_in_flange_mm" };
 pub(super) const TRUE_POINT: ByMount = ByMount { on_flange: "point_in_base_mm", fixed: "point_in_flange_mm" };
+pub(super) const TRUE_TARGET: ByMount = ByMount { on_flange: "base_from_target", fixed: "flange_from_target" };
 pub(super) const TRUE_PLATE: ByMount = ByMount { on_flange: "base_from_plate", fixed: "flange_from_plate" };
 
 /// Fields of the top level that are ours for this target; any others are kept as they are.
 pub(super) fn session(target: &Target) -> Vec<&'static str> {
     let of_target: &[&str] = match target {
         Target::Rgbd { .. } => &["sequence"],
-        Target::Ball { .. } | Target::RightAnglePlate | Target::Point | Target::Workpiece => &["truth"],
+        Target::Ball { .. } | Target::RightAnglePlate | Target::Point | Target::Pose { .. } | Target::Workpiece => {
+            &["truth"]
+        }
     };
     [SESSION, of_target].concat()
 }
@@ -77,6 +81,7 @@ pub(super) const fn target(target: &Target) -> &'static [&'static str] {
     match target {
         Target::Ball { .. } => &["kind", "radius_mm", "radius_std_mm"],
         Target::Point => &["kind", "touched_in_base_mm"],
+        Target::Pose { .. } => &["kind", "translation_std_mm", "rotation_std_deg"],
         Target::Workpiece => &["kind", "angle_deg", "pitch_mm", "height_mm", "diameter_mm"],
         Target::RightAnglePlate | Target::Rgbd { .. } => &["kind"],
     }
@@ -88,6 +93,7 @@ pub(super) fn truth(target: &Target) -> Vec<&'static str> {
         Target::Ball { .. } => Some(TRUE_BALL),
         Target::Point => Some(TRUE_POINT),
         Target::RightAnglePlate => Some(TRUE_PLATE),
+        Target::Pose { .. } => Some(TRUE_TARGET),
         Target::Workpiece | Target::Rgbd { .. } => None,
     };
     [Some(TRUE_SENSOR), of_target].into_iter().flatten().flat_map(|names| [names.on_flange, names.fixed]).collect()

@@ -49,17 +49,19 @@ const KINDS: &[(&str, Kind)] = &[
     (names::BALL, Kind::Ball),
     (names::RIGHT_ANGLE_PLATE, Kind::RightAnglePlate),
     (names::POINT, Kind::Point),
+    (names::POSE_TARGET, Kind::Pose),
     (names::WORKPIECE, Kind::Workpiece),
     (names::RGBD, Kind::Rgbd),
 ];
 /// A sequence is a session's own target only.
-const KINDS_WITH_STATIONS: &[(&str, Kind)] = KINDS.split_at(4).0;
+const KINDS_WITH_STATIONS: &[(&str, Kind)] = KINDS.split_at(5).0;
 
 #[derive(Clone, Copy)]
 enum Kind {
     Ball,
     RightAnglePlate,
     Point,
+    Pose,
     Workpiece,
     Rgbd,
 }
@@ -192,6 +194,10 @@ fn target(
                 object.optional("touched_in_base_mm").map(|cursor| cursor.vec3(&limits::POSITION_MM)).transpose()?;
             Target::Point
         }
+        Kind::Pose => Target::Pose {
+            translation_std_mm: object.optional_number("translation_std_mm", &limits::LENGTH_STD_MM)?,
+            rotation_std_deg: object.optional_number("rotation_std_deg", &limits::ORIENTATION_STD_DEG)?,
+        },
         Kind::Workpiece => {
             known.angle_deg = object.optional_number("angle_deg", &limits::PLANE_ANGLE_DEG)?;
             known.pitch_mm = object.optional_number("pitch_mm", &limits::PART_SIZE_MM)?;
@@ -325,15 +331,21 @@ fn one_line(cursor: &Cursor<'_>) -> Result<String, Refusal> {
 }
 
 fn capture(cursor: &Cursor<'_>, mended: &mut Mended) -> Result<Capture, Refusal> {
-    let object = cursor.object("an object with base_from_flange, and profile or point_mm")?;
+    let object = cursor.object("an object with base_from_flange, and profile, point_mm or sensor_from_target")?;
     let mut unknown = object.unknown(names::CAPTURE);
     let (base_from_flange, written_angles) = pose(&object, "base_from_flange", &mut unknown, mended)?;
-    let either = "either profile or point_mm";
-    let reading = match (object.optional("profile"), object.optional("point_mm")) {
-        (Some(cursor), None) => Reading::Profile(Arc::new(profile(&cursor, &mut unknown)?)),
-        (None, Some(cursor)) => Reading::Point(cursor.vec3(&limits::POINT_MM)?),
-        (Some(_), Some(_)) => return Err(cursor.refuse_as("both profile and point_mm", either)),
-        (None, None) => return Err(cursor.refuse_as("neither profile nor point_mm", either)),
+    let one_of = "one of profile, point_mm and sensor_from_target";
+    let readings = ["profile", "point_mm", "sensor_from_target"].map(|name| object.optional(name));
+    let reading = match readings {
+        [Some(cursor), None, None] => Reading::Profile(Arc::new(profile(&cursor, &mut unknown)?)),
+        [None, Some(cursor), None] => Reading::Point(cursor.vec3(&limits::POINT_MM)?),
+        // What a target's pose was written in is of no use to anyone.
+        [None, None, Some(_)] => Reading::Pose(pose(&object, "sensor_from_target", &mut unknown, mended)?.0),
+        [None, None, None] => {
+            return Err(cursor.refuse_as("neither profile nor point_mm nor sensor_from_target", one_of));
+        }
+        [Some(_), Some(_), _] => return Err(cursor.refuse_as("both profile and point_mm", one_of)),
+        [_, _, Some(_)] => return Err(cursor.refuse_as("sensor_from_target beside another reading", one_of)),
     };
     Ok(Capture {
         base_from_flange,
@@ -477,14 +489,22 @@ fn truth(cursor: &Cursor<'_>, target: &Target, mended: &mut Mended) -> Result<Tr
         let cursor = object.required(present(names), &format!("{what}, a list of 3 numbers in mm"))?;
         cursor.vec3(&limits::POSITION_MM)
     };
-    let (target_in_base_mm, base_from_plate) = match target {
-        Target::Ball { .. } => (position(names::TRUE_BALL, "the ball's true centre")?, None),
-        Target::Point => (position(names::TRUE_POINT, "the true point")?, None),
-        Target::RightAnglePlate => {
-            let (base_from_plate, _) = pose::<Base, Flange>(&object, present(names::TRUE_PLATE), &mut unknown, mended)?;
-            (base_from_plate.translation_mm(), Some(*base_from_plate.rigid()))
-        }
-        Target::Workpiece | Target::Rgbd { .. } => (Vec3::zeros(), None),
+    let mut whole = |names: ByMount| {
+        let (base_from_part, _) = pose::<Base, Flange>(&object, present(names), &mut unknown, mended)?;
+        Ok(*base_from_part.rigid())
     };
-    Ok(Truth { flange_from_sensor, target_in_base_mm, base_from_plate, unknown })
+    let (target_in_base_mm, base_from_plate, base_from_target) = match target {
+        Target::Ball { .. } => (position(names::TRUE_BALL, "the ball's true centre")?, None, None),
+        Target::Point => (position(names::TRUE_POINT, "the true point")?, None, None),
+        Target::RightAnglePlate => {
+            let base_from_plate = whole(names::TRUE_PLATE)?;
+            (base_from_plate.translation.vector, Some(base_from_plate), None)
+        }
+        Target::Pose { .. } => {
+            let base_from_target = whole(names::TRUE_TARGET)?;
+            (base_from_target.translation.vector, None, Some(base_from_target))
+        }
+        Target::Workpiece | Target::Rgbd { .. } => (Vec3::zeros(), None, None),
+    };
+    Ok(Truth { flange_from_sensor, target_in_base_mm, base_from_plate, base_from_target, unknown })
 }

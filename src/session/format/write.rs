@@ -118,6 +118,7 @@ fn target(out: &mut Writer, target: &Target, known: &Known, unknown: Option<&Unk
         Target::Ball { .. } => names::BALL,
         Target::RightAnglePlate => names::RIGHT_ANGLE_PLATE,
         Target::Point => names::POINT,
+        Target::Pose { .. } => names::POSE_TARGET,
         Target::Workpiece => names::WORKPIECE,
         Target::Rgbd { .. } => names::RGBD,
     });
@@ -130,6 +131,10 @@ fn target(out: &mut Writer, target: &Target, known: &Known, unknown: Option<&Unk
             if let Some(touched) = &known.point_in_base_mm {
                 out.field("touched_in_base_mm").vec3(touched);
             }
+        }
+        Target::Pose { translation_std_mm, rotation_std_deg } => {
+            out.optional_number("translation_std_mm", *translation_std_mm);
+            out.optional_number("rotation_std_deg", *rotation_std_deg);
         }
         Target::Workpiece => {
             out.optional_number("angle_deg", known.angle_deg);
@@ -185,6 +190,10 @@ fn capture(out: &mut Writer, capture: &Capture) {
     match &capture.reading {
         Reading::Point(point_in_sensor) => {
             out.field("point_mm").vec3(point_in_sensor);
+        }
+        Reading::Pose(sensor_from_target) => {
+            out.field("sensor_from_target");
+            pose(out, sensor_from_target, None, nested(&capture.unknown, "sensor_from_target"));
         }
         Reading::Profile(points) => {
             out.field_on_new_line("profile");
@@ -259,6 +268,11 @@ fn truth(out: &mut Writer, truth: &Truth, target: &Target, mount: Mount) {
         Target::RightAnglePlate => {
             if let Some(base_from_plate) = &truth.base_from_plate {
                 true_pose(out, names::TRUE_PLATE, base_from_plate);
+            }
+        }
+        Target::Pose { .. } => {
+            if let Some(base_from_target) = &truth.base_from_target {
+                true_pose(out, names::TRUE_TARGET, base_from_target);
             }
         }
         Target::Workpiece | Target::Rgbd { .. } => {}

@@ -32,6 +32,8 @@ pub(super) struct RawPose<'t> {
     pub numbers: &'t [f64],
     /// The reduced point.
     pub point_in_sensor: Option<Vec3>,
+    /// The target's pose in the sensor: how it is written, and its numbers.
+    pub target: Option<(PoseNotation, &'t [f64])>,
     /// The side of the ball's centre.
     pub side: SideChoice,
     /// The edge of the plate that it saw.
@@ -200,12 +202,17 @@ impl Gathered {
             None => Ok(()),
         };
         check(base_from_flange.translation_mm().as_slice(), &limits::POSITION_MM)?;
-        let reading = match raw.point_in_sensor {
-            Some(point_in_sensor) => {
+        let reading = match (raw.target, raw.point_in_sensor) {
+            (Some((notation, numbers)), _) => {
+                let seen = notation.base_from_flange(numbers).map_err(|problem| not_a_pose(&problem))?;
+                check(seen.translation_mm().as_slice(), &limits::POSITION_MM)?;
+                Reading::Pose(Transform::from_rigid(*seen.rigid()))
+            }
+            (None, Some(point_in_sensor)) => {
                 check(point_in_sensor.as_slice(), &limits::POINT_MM)?;
                 Reading::Point(point_in_sensor)
             }
-            None => Reading::Profile(Arc::clone(&self.no_profile)),
+            (None, None) => Reading::Profile(Arc::clone(&self.no_profile)),
         };
         check(raw.step_mm.as_slice(), &limits::STEP_MM)?;
         if let [_, _, _, quaternion @ ..] = raw.numbers
@@ -228,7 +235,7 @@ impl Gathered {
 
     fn add(&mut self, raw: &RawPose<'_>, capture: Capture) {
         self.num_poses += 1;
-        self.num_points += usize::from(raw.point_in_sensor.is_some());
+        self.num_points += usize::from(raw.point_in_sensor.is_some() || raw.target.is_some());
         let wanted = raw.label.as_deref().map(usable_label).filter(|label| !label.is_empty());
         let continues = raw.may_continue && wanted.is_some() && wanted == self.last_wanted;
         self.last_wanted.clone_from(&wanted);

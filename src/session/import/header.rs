@@ -15,6 +15,15 @@ pub(super) struct Said {
     pub angle_unit: Option<AngleUnit>,
     pub orientation: Option<OrientationForm>,
     pub convention: Option<&'static PoseConvention>,
+    /// Of the target's pose, where it is written in another form than the robot's.
+    pub target: TargetSaid,
+}
+
+/// What a header says of the target's pose.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct TargetSaid {
+    pub length_unit: Option<LengthUnit>,
+    pub orientation: Option<OrientationForm>,
 }
 
 /// The meaning of a name, before it is known what stands beside it.
@@ -104,11 +113,50 @@ fn words(name: &str) -> Vec<Word> {
     words
 }
 
+/// What stands before the names of a target's pose.
+const TARGETS: [&str; 6] = ["target", "object", "marker", "board", "tag", "sensor_from_target"];
+
+/// A column's name without the target's in front of it; `None` of a column of something else.
+fn of_target(cell: &str) -> Option<&str> {
+    let cell = cell.trim();
+    TARGETS.iter().find_map(|target| {
+        let rest = cell.get(target.len()..).filter(|_| cell[..target.len()].eq_ignore_ascii_case(target))?;
+        rest.strip_prefix(['_', ' ', '.', '-'])
+    })
+}
+
+/// The roles of the columns that a header names, and what else it says; `None` for the cells that it does not explain. A
+/// target's pose is named as the robot's, with the target in front: `target_x`, `marker.qw`.
+///
+/// `convention` and `written` are as in [`roles_of_robot`].
+pub(super) fn roles(
+    cells: &[&str],
+    convention: &'static PoseConvention,
+    written: Option<&'static PoseConvention>,
+) -> (Vec<Option<Role>>, Said) {
+    let targets: Vec<&str> = cells.iter().map(|cell| of_target(cell).unwrap_or("")).collect();
+    if targets.iter().all(|cell| cell.is_empty()) {
+        return roles_of_robot(cells, convention, written);
+    }
+    let others: Vec<&str> = cells.iter().map(|cell| if of_target(cell).is_some() { "" } else { cell }).collect();
+    let (mut roles, mut said) = roles_of_robot(&others, convention, written);
+    let (of_target, said_of_target) = roles_of_robot(&targets, convention, None);
+    for (role, of_target) in roles.iter_mut().zip(of_target) {
+        match of_target {
+            Some(Role::Position(idx)) => *role = Some(Role::Target(idx)),
+            Some(Role::Orientation(idx)) => *role = Some(Role::Target(3 + idx)),
+            _ => {}
+        }
+    }
+    said.target = TargetSaid { length_unit: said_of_target.length_unit, orientation: said_of_target.orientation };
+    (roles, said)
+}
+
 /// The roles of the columns that a header names, and what else it says; `None` for the cells that it does not explain.
 ///
 /// `convention` settles what several makers name alike; where the table itself says that its angles are of a maker, `written`,
 /// they are the columns with that maker's names, in that order.
-pub(super) fn roles(
+fn roles_of_robot(
     cells: &[&str],
     convention: &'static PoseConvention,
     written: Option<&'static PoseConvention>,
@@ -206,6 +254,9 @@ pub(super) fn units(cells: &[&str], roles: &[Option<Role>], said: &mut Said) {
         match role {
             Some(Role::Position(_)) => said.length_unit = said.length_unit.or_else(|| length_unit(&unit)),
             Some(Role::Point(_)) => said.point_unit = said.point_unit.or_else(|| length_unit(&unit)),
+            Some(Role::Target(0..3)) => {
+                said.target.length_unit = said.target.length_unit.or_else(|| length_unit(&unit));
+            }
             Some(Role::Orientation(_)) => said.angle_unit = said.angle_unit.or_else(|| angle_unit(&unit)),
             _ => {}
         }
@@ -229,6 +280,7 @@ mod tests {
                 Some(Role::Position(idx)) => format!("t{idx}"),
                 Some(Role::Orientation(idx)) => format!("o{idx}"),
                 Some(Role::Point(idx)) => format!("p{idx}"),
+                Some(Role::Target(idx)) => format!("T{idx}"),
                 Some(Role::Side) => "S".to_owned(),
                 Some(Role::Edge) => "E".to_owned(),
                 Some(Role::Used) => "U".to_owned(),
@@ -276,6 +328,16 @@ mod tests {
             "label,capture,side,enabled,step_mm,x_mm,y_mm,z_mm,W_deg,P_deg,R_deg,notation",
             "L?SUTt0t1t2o0o1o2N",
             "mm ° angles fanuc-wpr",
+        );
+        check(
+            "x,y,z,qw,qx,qy,qz,target_x,target_y,target_z,target_qx,target_qy,target_qz,target_qw",
+            "t0t1t2o0o1o2o3T0T1T2T3T4T5T6",
+            "? ? wxyz ?",
+        );
+        check(
+            "No,X,Y,Z,W,P,R,marker x [m],marker y,marker z,marker W,marker P,marker R",
+            "Lt0t1t2o0o1o2T0T1T2T3T4T5",
+            "? ? angles fanuc-wpr",
         );
         check("x,z", "??", "? ? ? ?");
     }

@@ -11,6 +11,7 @@ mod gather;
 mod header;
 mod kuka;
 mod matching;
+mod pose_pairs;
 mod printed;
 mod profiles;
 mod program;
@@ -27,7 +28,7 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use crate::geometry::PoseNotation;
-use crate::session::{Edit, EditRefusal, Published, Session, Station, Target};
+use crate::session::{Edit, EditRefusal, Published, Reading, Session, Station, Target};
 use crate::sheet::layout::Given;
 use crate::sheet::text::decode;
 use crate::watch::{Cancelled, Watch};
@@ -110,6 +111,8 @@ pub enum Kind {
     ProfileColumns,
     /// YAML with lists of points, and perhaps poses.
     Yaml,
+    /// A JSON list of pairs of matrices: of the flange in the base, and of the target in the camera.
+    PosePairs,
     /// Messages that ROS 2 has recorded.
     RosBag,
 }
@@ -127,6 +130,9 @@ pub enum Role {
     Orientation(usize),
     /// Coordinate of the reduced point in the sensor, 0 to 2.
     Point(usize),
+    /// Number of the target's pose in the sensor: 0 to 2 its position, from 3 on its orientation, written as the pose's or as
+    /// a quaternion.
+    Target(usize),
     /// Side of the ball's centre.
     Side,
     /// Edge of the plate that the station saw.
@@ -414,6 +420,13 @@ impl Imported {
     #[must_use]
     pub fn has_edges(&self) -> bool {
         self.session.is_none() && check_edges(&self.stations, &Target::Point).is_err()
+    }
+
+    /// Whether the sources are about a target whose whole pose was seen.
+    #[must_use]
+    pub fn has_target_poses(&self) -> bool {
+        let mut captures = self.stations.iter().flat_map(|station| &station.captures);
+        self.session.is_none() && captures.any(|capture| matches!(capture.reading, Reading::Pose(_)))
     }
 
     /// A new session with what was read, in the notation that it was read in; a session among the sources keeps its name

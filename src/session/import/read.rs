@@ -147,6 +147,12 @@ impl<'o> Import<'o> {
                 self.imported.published = self.imported.published.take().or(published);
                 filled.notation = Some(notation);
             }
+            Recognised::PosePairs(pairs) => {
+                let notation = pairs.notation(self.fallback);
+                self.gathered.set_notation(notation, None, None);
+                pairs.read(source, &mut self.gathered, &mut preview);
+                filled.notation = Some(notation);
+            }
             Recognised::Yaml(document) => {
                 if document.has_poses() {
                     let notation = options.notation.unwrap_or_else(|| document.notation(self.fallback));
@@ -331,7 +337,7 @@ impl Gathered {
         let captures = self.stations.iter().flat_map(|station| &station.captures);
         let is_without = |reading: &Reading| match reading {
             Reading::Profile(profile) => Arc::ptr_eq(profile, &self.no_profile),
-            Reading::Point(_) => false,
+            Reading::Point(_) | Reading::Pose(_) => false,
         };
         captures.filter(|capture| is_without(&capture.reading)).count()
     }

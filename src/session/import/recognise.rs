@@ -5,7 +5,7 @@ use crate::sheet::layout::{Layout, layout};
 use crate::sheet::profile::named;
 
 use super::table::{self, Columns};
-use super::{ImportOptions, Kind, Role, abb, fanuc, kuka, printed, ur, yaml};
+use super::{ImportOptions, Kind, Role, abb, fanuc, kuka, pose_pairs, printed, ur, yaml};
 
 /// What was found on the way and is needed for reading.
 pub(super) enum Recognised {
@@ -17,6 +17,8 @@ pub(super) enum Recognised {
     Printed(Box<printed::Tables>),
     /// A robot's program.
     Program(Kind),
+    /// Pairs of matrices.
+    PosePairs(pose_pairs::Pairs),
     /// YAML or JSON.
     Yaml(Box<yaml::Document>),
 }
@@ -27,6 +29,7 @@ impl Recognised {
             Self::Session => Kind::Session,
             Self::Table(kind, ..) | Self::Program(kind) => *kind,
             Self::Printed(_) => Kind::PrintedTable,
+            Self::PosePairs(_) => Kind::PosePairs,
             Self::Yaml(_) => Kind::Yaml,
         }
     }
@@ -56,6 +59,7 @@ pub(super) fn recognise(
             let columns = table::columns(text, &layout, options, notation);
             return Some(Recognised::Table(kind, Box::new(layout), columns));
         }
+        Some(Kind::PosePairs) => return pose_pairs::pairs(text).map(Recognised::PosePairs),
         Some(Kind::Yaml) => return yaml::document(text).map(|document| Recognised::Yaml(Box::new(document))),
         Some(kind @ (Kind::FanucProgram | Kind::AbbModule | Kind::KukaProgram | Kind::UrScript)) => {
             return Some(Recognised::Program(kind));
@@ -64,6 +68,9 @@ pub(super) fn recognise(
     }
     if text.trim_start().starts_with('{') && text.contains("\"handeye-session\"") {
         return Some(Recognised::Session);
+    }
+    if let Some(pairs) = pose_pairs::pairs(text) {
+        return Some(Recognised::PosePairs(pairs));
     }
     if let Some(tables) = printed::find(text) {
         return Some(Recognised::Printed(Box::new(tables)));

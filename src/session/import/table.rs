@@ -118,6 +118,22 @@ fn fill_by_values(roles: &mut [Option<Role>], layout: &Layout, said: &mut Said) 
     };
     let quaternion_at =
         |free: &[usize], at: usize| free.get(at..at + 4).is_some_and(|four| is_quaternion(sample, four));
+    // Two poses a row, each with a quaternion: the robot's and the target's.
+    let pairs_at = |at: usize| free.len() == at + 14 && quaternion_at(&free, at + 3) && quaternion_at(&free, at + 10);
+    if let Some(at) = [0, 1].into_iter().find(|at| pairs_at(*at)) {
+        if at == 1 && !has_label {
+            roles[free[0]] = Some(if first_is_label(&free) { Role::Label } else { Role::Ignore });
+        }
+        said.orientation = Some(OrientationForm::QuaternionWxyz);
+        for (place, column) in free[at..].iter().enumerate() {
+            roles[*column] = Some(match place {
+                0..3 => Role::Position(place),
+                3..7 => Role::Orientation(place - 3),
+                _ => Role::Target(place - 7),
+            });
+        }
+        return;
+    }
     // A row of a pose and its point: 6 or 7 numbers, and 0, 2 or 3 more; with a name or a time in front of it one more.
     let lead = match free.len() {
         6 => 0,
@@ -179,6 +195,7 @@ pub(super) fn notation(layout: &Layout, columns: &Columns, notation: &PoseNotati
             .map(|(value, _)| value.abs())
             .fold(0.0, f64::max)
     };
+    // A camera that looks at a target from afar may do so in millimetres while the robot is given in metres: each tells by itself.
     let largest_position = largest(|role| matches!(role, Role::Position(_)));
     let largest_angle = largest(|role| matches!(role, Role::Orientation(_)));
     let said = &columns.said;
@@ -214,6 +231,8 @@ pub(super) fn notation(layout: &Layout, columns: &Columns, notation: &PoseNotati
 struct Places {
     numbers: Vec<usize>,
     point: [Option<usize>; 3],
+    /// Columns of the target's pose; empty if there are none.
+    target: Vec<usize>,
     label: Option<usize>,
     side: Option<usize>,
     edge: Option<usize>,
@@ -233,6 +252,7 @@ impl Places {
         Ok(Self {
             numbers: needed.map(|role| at(role).ok_or(role)).collect::<Result<_, _>>()?,
             point: [0, 1, 2].map(|idx| at(Role::Point(idx))),
+            target: (0..7).map_while(|idx| at(Role::Target(idx))).collect(),
             label: at(Role::Label),
             side: at(Role::Side),
             edge: at(Role::Edge),
@@ -276,6 +296,8 @@ pub(super) fn read(
         _ => (1..=columns.roles.len()).map(|column| column.to_string()).collect(),
     };
     gathered.reserve(records(text).count(), text.len());
+    let target_notation = target_notation(layout, columns, &notation);
+    let mut target_numbers = Vec::with_capacity(7);
     let point_in_mm = columns.said.point_unit.map_or(1.0, LengthUnit::in_mm);
     let mut cells = Vec::new();
     let mut numbers = Vec::with_capacity(notation.num_numbers());
@@ -301,8 +323,10 @@ pub(super) fn read(
         if cells.iter().all(|cell| cell.text.is_empty()) {
             continue;
         }
-        match row(&cells, places, layout.has_decimal_comma, &mut numbers) {
+        let in_target = target_row(&cells, places, layout.has_decimal_comma, &mut target_numbers);
+        match in_target.and_then(|()| row(&cells, places, layout.has_decimal_comma, &mut numbers)) {
             Ok(mut raw) => {
+                raw.target = (!target_numbers.is_empty()).then_some((target_notation, target_numbers.as_slice()));
                 raw.point_in_sensor = raw.point_in_sensor.map(|point| point * point_in_mm);
                 raw.at = (record.line, cells.get(places.numbers[0]).map_or(1, |cell| cell.column(record.text)));
                 raw.numbers = &numbers;
@@ -390,6 +414,49 @@ fn row<'t>(
 /// A cell's text with quotation marks as they were before they were doubled.
 fn unescaped(text: &str) -> Cow<'_, str> {
     if text.contains("\"\"") { text.replace("\"\"", "\"").into() } else { text.into() }
+}
+
+/// How the target's pose is written: as the header says, else as the robot's, but in the unit that its numbers show.
+fn target_notation(layout: &Layout, columns: &Columns, notation: &PoseNotation) -> PoseNotation {
+    /// Cameras see targets nearer than this in metres, and further off in millimetres.
+    const LARGEST_METRES: f64 = 5.0;
+    let places = columns.roles.iter().enumerate().filter(|(_, role)| matches!(role, Role::Target(0..3)));
+    let values = places.flat_map(|(column, _)| layout.sample.iter().filter_map(move |row| row.get(column)));
+    let largest = values.filter(|value| !value.is_nan()).fold(0.0_f64, |most, value| most.max(value.abs()));
+    let by_size = if largest > LARGEST_METRES { LengthUnit::Millimetres } else { LengthUnit::Metres };
+    let has_quaternion = columns.roles.contains(&Role::Target(6));
+    PoseNotation {
+        length_unit: columns.said.target.length_unit.unwrap_or(by_size),
+        orientation: match columns.said.target.orientation {
+            Some(form) => form,
+            None if has_quaternion && notation.orientation == OrientationForm::Angles => {
+                OrientationForm::QuaternionWxyz
+            }
+            None if has_quaternion => notation.orientation,
+            None => OrientationForm::Angles,
+        },
+        flange_from_tcp: None,
+        is_inverse: false,
+        ..*notation
+    }
+}
+
+/// The numbers of the target's pose; none where all their cells are empty.
+fn target_row(
+    cells: &[Cell<'_>],
+    places: &Places,
+    has_decimal_comma: bool,
+    numbers: &mut Vec<f64>,
+) -> Result<(), CellProblem> {
+    numbers.clear();
+    let is_filled = |column: &usize| cells.get(*column).is_some_and(|cell| !is_missing(cell.text));
+    if places.target.iter().any(is_filled) {
+        for column in &places.target {
+            let value = cells.get(*column).and_then(|cell| number(cell.text, has_decimal_comma));
+            numbers.push(value.ok_or((*column, A_NUMBER))?);
+        }
+    }
+    Ok(())
 }
 
 /// The reduced point; none where all its cells are empty. A point of the laser plane has no column for y.

@@ -33,7 +33,7 @@ pub enum Column {
     Number(usize),
     /// The commanded move from the capture before, mm.
     Step,
-    /// A coordinate of a point that was already reduced, 0 to 2, mm.
+    /// A coordinate of a point that was already reduced, or of a target's origin, 0 to 2, mm.
     Point(usize),
 }
 
@@ -65,7 +65,7 @@ pub fn columns(session: &Session) -> Vec<Column> {
     match session.target {
         Target::Ball { .. } => columns.push(Column::Side),
         Target::RightAnglePlate => columns.push(Column::Edge),
-        Target::Point | Target::Workpiece | Target::Rgbd { .. } => {}
+        Target::Point | Target::Pose { .. } | Target::Workpiece | Target::Rgbd { .. } => {}
     }
     columns.extend((0..session.robot.notation.num_numbers()).map(Column::Number));
     let has_steps = session.stations.iter().any(|station| station.captures.len() > 1)
@@ -132,6 +132,7 @@ pub fn number(session: &Session, place: Place, column: Column) -> Option<f64> {
 fn point_of(capture: &Capture) -> Option<Vec3> {
     match &capture.reading {
         Reading::Point(point_in_sensor) => Some(*point_in_sensor),
+        Reading::Pose(sensor_from_target) => Some(sensor_from_target.translation_mm()),
         Reading::Profile(_) => None,
     }
 }

@@ -376,10 +376,15 @@ fn read_point(read: &mut ReadCells, place: Place, capture: &Capture, cells: &BTr
     }
     let value = match (coordinates, &capture.reading) {
         _ if !unreadable.is_empty() => Err(CellProblem::OthersUnreadable),
-        ([None, None, None], reading) if !matches!(reading, Reading::Point(_)) => return,
+        ([None, None, None], Reading::Profile(_)) => return,
         (_, Reading::Profile(profile)) if has_profile(&capture.reading) => {
             Err(CellProblem::HasProfile { num_points: profile.len() })
         }
+        // The orientation of a target stays as it was.
+        ([Some(x), Some(y), Some(z)], Reading::Pose(seen)) => {
+            Ok(Reading::Pose(Transform::from_parts(Vec3::new(x, y, z), seen.rotation())))
+        }
+        (_, Reading::Pose(_)) => Err(CellProblem::PointIncomplete),
         ([Some(x), Some(y), Some(z)], _) => Ok(Reading::Point(Vec3::new(x, y, z))),
         ([None, None, None], _) => Ok(no_reading()),
         _ => Err(CellProblem::PointIncomplete),

@@ -38,6 +38,7 @@ pub const fn in_base(method: Method) -> &'static str {
     match method {
         Method::PlateOrthogonal | Method::PlateBundle => "point in base / mm",
         Method::FixedPoint => "tip in base / mm",
+        Method::Motion => "target in base / mm",
         Method::BallFixedPoint | Method::BallMaxArcStep | Method::BallMaxArc | Method::BallBundle => {
             "ball in base / mm"
         }
@@ -68,6 +69,7 @@ pub const fn in_sensor(method: Method) -> &'static str {
     match method {
         Method::PlateOrthogonal | Method::PlateBundle => "point in sensor / mm",
         Method::FixedPoint => "tip in sensor / mm",
+        Method::Motion => "target in sensor / mm",
         Method::BallFixedPoint | Method::BallMaxArcStep | Method::BallMaxArc | Method::BallBundle => {
             "ball in sensor / mm"
         }
@@ -112,6 +114,7 @@ pub const fn scatter_title(target: &Target) -> &'static str {
     match target {
         Target::RightAnglePlate => "Points about their edges, 1σ",
         Target::Point => "Tips, 1σ",
+        Target::Pose { .. } => "Origins of the target, 1σ",
         _ => "Ball centres, 1σ",
     }
 }
@@ -183,6 +186,7 @@ pub fn headline_amid_seen(method: Method, z_mm: &str) -> String {
     let seen = match method {
         Method::PlateOrthogonal | Method::PlateBundle => "points",
         Method::FixedPoint => "tips",
+        Method::Motion => "targets",
         Method::BallFixedPoint | Method::BallMaxArcStep | Method::BallMaxArc | Method::BallBundle => "balls",
     };
     format!("a point amid the {seen} seen, z = {z_mm} mm:")

@@ -43,6 +43,12 @@ pub const fn checked(target: &Target) -> &'static [&'static str] {
             "scene: drift, a switched tool",
             "residuals: two halves that agree, a normal distribution",
         ],
+        Target::Pose { .. } => &[
+            "poses: a list that is inverted, poses that contradict the others, a flipped target",
+            "rotations: enough of them, and about more than one axis",
+            "target: whether its size is as stated",
+            "residuals: two halves that agree, a normal distribution",
+        ],
         Target::Ball { .. } | Target::Workpiece | Target::Rgbd { .. } => &[
             "poses: convention, order, inverse, units, twins",
             "stations: wrong, stale or mixed-up poses, wrong sides",

@@ -131,6 +131,9 @@ pub const fn scatter_title(target: &Target) -> &'static str {
         Target::RightAnglePlate => {
             "Points about their edges as seen along these, with 1σ ellipses, in the plate's frame"
         }
+        Target::Pose { .. } => {
+            "The target's origin as each station finds it, about the mean, with 1σ ellipses, in the base"
+        }
         Target::Point => "The tip as each station finds it, about the mean, with 1σ ellipses, in the base",
         _ => "The ball's centre as each station finds it, about the mean, with 1σ ellipses, in the base",
     }
@@ -262,6 +265,7 @@ pub const fn target(target: &Target, is_point: bool) -> &'static str {
         Target::Ball { .. } => "ball",
         Target::RightAnglePlate => "plate",
         Target::Point => "tip",
+        Target::Pose { .. } => "target",
         Target::Workpiece => "workpiece",
         Target::Rgbd { .. } => "scene",
     }

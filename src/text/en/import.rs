@@ -178,6 +178,8 @@ pub const PLATE: &str = "right-angle plate";
 /// Target.
 pub const POINT: &str = "tip or pin";
 /// Target.
+pub const POSE: &str = "marker or board";
+/// Target.
 pub const WORKPIECE: &str = "scanned part";
 /// Button.
 pub const NEW_SESSION: &str = "Make a new session";
@@ -204,7 +206,7 @@ pub const RADIUS_UNUSABLE: &str = "Type a radius from 0.001 to 10 000 mm.";
 pub const EDGES_OF_NO_PLATE: &str = "These poses have a column edge, which only a plate has: choose the right-angle plate, or set the column to be ignored.";
 
 /// The forms, with what they look like.
-pub const FORMS: [(Kind, &str); 9] = [
+pub const FORMS: [(Kind, &str); 10] = [
     (Kind::PoseTable, "one pose a row: CSV, TSV, or columns apart by blanks; with points or the names of profiles"),
     (Kind::PrintedTable, "a table of poses and points copied from a paper, with q0=…, t1=…, xs=…"),
     (Kind::FanucProgram, "the positions P[…] of a .ls file"),
@@ -214,6 +216,7 @@ pub const FORMS: [(Kind, &str); 9] = [
     (Kind::Profile, "rows of x and z; of several files each belongs to the pose of its number"),
     (Kind::ProfileColumns, "x in the first column, z of one profile in each other"),
     (Kind::Yaml, "lists of points, with or without poses"),
+    (Kind::PosePairs, "a JSON list of pairs of 4 × 4 matrices: the flange in the base, the target in the camera"),
 ];
 
 /// What a source was taken for.
@@ -229,6 +232,7 @@ pub const fn kind(kind: Kind) -> &'static str {
         Kind::UrScript => "UR script",
         Kind::Profile => "profile",
         Kind::ProfileColumns => "profiles in columns",
+        Kind::PosePairs => "pairs of poses",
         Kind::Yaml => "YAML",
         Kind::RosBag => "ROS 2 bag",
     }
@@ -264,6 +268,8 @@ pub fn role(role: Role, notation: &PoseNotation, point_unit: LengthUnit) -> Stri
         Role::Position(idx) => format!("{} / {}", axis(idx), notation.length_unit.symbol()),
         Role::Orientation(idx) => orientation_number(idx, notation),
         Role::Point(idx) => format!("point {} / {}", axis(idx), point_unit.symbol()),
+        Role::Target(idx @ 0..3) => format!("target {}", axis(idx)),
+        Role::Target(idx) => format!("target {}", orientation_number(idx - 3, notation)),
         Role::Side => "side".to_owned(),
         Role::Edge => "edge".to_owned(),
         Role::Used => "used".to_owned(),

@@ -21,6 +21,7 @@ pub const fn kind_name(kind: Kind) -> &'static str {
         Kind::UrScript => "poses of Universal Robots",
         Kind::Profile => "profile",
         Kind::ProfileColumns => "profiles, one a column",
+        Kind::PosePairs => "pairs of poses",
         Kind::Yaml => "YAML",
         Kind::RosBag => "ROS 2 bag",
     }

@@ -1,6 +1,6 @@
 //! Names of the methods and verdicts.
 
-use crate::calibrate::{Method, Verdict};
+use crate::calibrate::{ClosedForm, Method, PoseFault, Verdict};
 
 /// The method's name in a table head.
 #[must_use]
@@ -13,6 +13,7 @@ pub const fn method_name(method: Method) -> &'static str {
         Method::PlateOrthogonal => "Orthogonal edges, published",
         Method::PlateBundle => "Bundle of both edges",
         Method::FixedPoint => "Fixed point of a tip",
+        Method::Motion => "Motions of a target",
     }
 }
 
@@ -27,6 +28,7 @@ pub const fn method_short_name(method: Method) -> &'static str {
         Method::PlateOrthogonal => "orthogonal",
         Method::PlateBundle => "plate bundle",
         Method::FixedPoint => "tip",
+        Method::Motion => "motion",
     }
 }
 
@@ -45,6 +47,9 @@ pub const fn method_description(method: Method) -> &'static str {
         }
         Method::PlateBundle => "All edge points on two lines that meet at a right angle: the answer to use",
         Method::FixedPoint => "A tip touched by the laser line from several poses stays where it is",
+        Method::Motion => {
+            "The flange's motions against the target's (A X = X B), weighed by the noise of both: the answer to use"
+        }
     }
 }
 
@@ -65,6 +70,32 @@ pub const fn verdict_id(verdict: Verdict) -> &'static str {
         Verdict::Good => "good",
         Verdict::Usable => "usable",
         Verdict::NotUsable => "not-usable",
+    }
+}
+
+/// What would explain a pose that was left out, in result files.
+#[must_use]
+pub const fn pose_fault_id(fault: PoseFault) -> &'static str {
+    match fault {
+        PoseFault::Inverted => "inverted",
+        PoseFault::Flipped => "flipped",
+        PoseFault::Orientation => "orientation",
+        PoseFault::Place => "place",
+        PoseFault::Both => "both",
+    }
+}
+
+/// A published closed form, with its paper.
+#[must_use]
+pub const fn closed_form_name(form: ClosedForm) -> &'static str {
+    match form {
+        ClosedForm::Tsai => "Tsai & Lenz 1989",
+        ClosedForm::Park => "Park & Martin 1994",
+        ClosedForm::Horaud => "Horaud & Dornaika 1995",
+        ClosedForm::Andreff => "Andreff et al. 2001",
+        ClosedForm::Daniilidis => "Daniilidis 1999",
+        ClosedForm::Shah => "Shah 2013 (A X = Z B)",
+        ClosedForm::Li => "Li et al. 2010 (A X = Z B)",
     }
 }
 

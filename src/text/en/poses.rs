@@ -73,7 +73,7 @@ pub const fn not_found(target: &Target) -> &'static str {
         Target::Ball { .. } => "no arc",
         Target::RightAnglePlate => "no edge",
         Target::Point => "no tip",
-        Target::Workpiece | Target::Rgbd { .. } => "nothing found",
+        Target::Pose { .. } | Target::Workpiece | Target::Rgbd { .. } => "nothing found",
     }
 }
 

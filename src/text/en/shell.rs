@@ -118,6 +118,8 @@ pub const fn next_arcs(target: &Target) -> &'static str {
     match target {
         Target::Ball { .. } => "Look at the arcs",
         Target::RightAnglePlate => "Look at the edges",
+        Target::Pose { .. } => "Look at what was seen",
+        Target::Rgbd { .. } => "Look at the sequence",
         _ => "Look at the profiles",
     }
 }
@@ -214,10 +216,10 @@ pub const LEFT_OUT: &str = "left out";
 /// What the row means.
 #[must_use]
 pub fn left_out_hint(method: Method) -> &'static str {
-    if method == Method::FixedPoint {
-        "Distance between this station's tip and the tip found without it"
-    } else {
-        "Distance between this station's ball and the ball found without it"
+    match method {
+        Method::FixedPoint => "Distance between this station's tip and the tip found without it",
+        Method::Motion => "Distance between this station's target and the target found without it",
+        _ => "Distance between this station's ball and the ball found without it",
     }
 }
 
@@ -227,6 +229,7 @@ pub const fn target_in_sensor(target: &Target) -> &'static str {
     match target {
         Target::Ball { .. } => "ball in sensor",
         Target::Point => "tip in sensor",
+        Target::Pose { .. } => "target in sensor",
         _ => "point in sensor",
     }
 }

@@ -267,6 +267,7 @@ pub fn target(target: &Target) -> String {
         }
         Target::RightAnglePlate => "right-angle plate".to_owned(),
         Target::Point => "point".to_owned(),
+        Target::Pose { .. } => "marker or board, its whole pose seen".to_owned(),
         Target::Workpiece => "workpiece".to_owned(),
         Target::Rgbd { sequence } => format!("RGB-D sequence {sequence}"),
     }

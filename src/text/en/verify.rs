@@ -44,6 +44,7 @@ pub const fn own_target_name(target: &Target) -> &'static str {
         Target::Ball { .. } => "ball",
         Target::RightAnglePlate => "plate",
         Target::Point => "tip",
+        Target::Pose { .. } => "target",
         Target::Workpiece => "workpiece",
         Target::Rgbd { .. } => "sequence",
     }

@@ -1,6 +1,6 @@
 //! Sentences and remedies of the warnings.
 
-use crate::calibrate::Warning;
+use crate::calibrate::{PoseFault, Warning};
 
 /// What is the matter, in one sentence.
 #[must_use]
@@ -62,6 +62,26 @@ pub fn warning_message(warning: &Warning) -> String {
         Warning::StationStandsOut { label, error_mm, typical_mm } => format!(
             "Station {label} disagrees with the others: left out, it is missed by {error_mm:.2} mm, the others by {typical_mm:.2} mm."
         ),
+        Warning::PoseRejected { label, capture_idx, off_mm, off_deg, fault } => format!(
+            "Station {label}, capture {}: the target's pose contradicts all others by {off_mm:.1} mm and {off_deg:.1}° and is left out: {}.",
+            capture_idx + 1,
+            match fault {
+                PoseFault::Inverted => "it fits once inverted, as target_from_sensor",
+                PoseFault::Flipped => "it fits once the target is flipped, as flat markers are read from afar",
+                PoseFault::Orientation => "its place fits, its orientation does not",
+                PoseFault::Place => "its orientation fits, its place does not",
+                PoseFault::Both => "neither its place nor its orientation fits",
+            }
+        ),
+        Warning::StreamInverted { ratio } => format!(
+            "With the robot's poses or the target's inverted the residual is {ratio:.0} times smaller: the sensor is mounted the other way than the session says, or one of the two lists is given the wrong way round."
+        ),
+        Warning::TargetScale { factor, std } => format!(
+            "The target's distances fit better by a factor of {factor:.4} ± {std:.4}: its size is another than was told to whatever found it, or its unit is."
+        ),
+        Warning::TimeOffsetUnknown => {
+            "The motions do not tell by how much the clocks of robot and camera differ: they turn too little or too evenly.".to_owned()
+        }
         Warning::NotConverged { num_iterations } => {
             format!("The solver had not settled after {num_iterations} iterations.")
         }
@@ -104,6 +124,20 @@ pub const fn warning_remedy(warning: &Warning) -> &'static str {
         Warning::StationStandsOut { .. } => {
             "Check the pose and the profile of this station; un-tick it to see what changes."
         }
+        Warning::PoseRejected { fault: PoseFault::Inverted, .. } => "Invert this pose, or measure the station again.",
+        Warning::PoseRejected { fault: PoseFault::Flipped, .. } => {
+            "Measure the station again with the target tilted or nearer; a board of several markers cannot flip."
+        }
+        Warning::PoseRejected { .. } => {
+            "Measure the station again: with robot and target at rest, and both read at one time."
+        }
+        Warning::StreamInverted { .. } => {
+            "Set the mounting (sensor on the flange, or fixed) to the other one, or have the poses as base_from_flange and sensor_from_target."
+        }
+        Warning::TargetScale { .. } => {
+            "Measure the target with a caliper, and give its true size to the program that finds its pose."
+        }
+        Warning::TimeOffsetUnknown => "Let the robot turn to and fro at changing speed while both are recorded.",
         Warning::NotConverged { .. } => "Check poses and units.",
     }
 }

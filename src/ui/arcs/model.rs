@@ -87,6 +87,10 @@ fn capture_row(reading: Option<&calibrate::Reading>) -> CaptureRow {
             row.feature = Some(edge.feature);
         }
         Some(calibrate::Reading::Point(point)) => row.point_mm = Some([point.x, point.z]),
+        Some(calibrate::Reading::Pose(seen)) => {
+            let place = seen.translation_mm();
+            row.point_mm = Some([place.x, place.z]);
+        }
         None => {}
     }
     row
@@ -172,6 +176,7 @@ pub fn capture_view(
     let capture = session.stations.get(station_idx)?.captures.get(capture_idx)?;
     Some(match &capture.reading {
         Reading::Point(point) => CaptureView::Point([point.x, point.y, point.z]),
+        Reading::Pose(seen) => CaptureView::Point(seen.translation_mm().into()),
         Reading::Profile(profile) => {
             let measured = results.map(|results| &*results.measured);
             let reading = measured.and_then(|measured| measured.reading(station_idx, capture_idx));

@@ -142,7 +142,7 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut ArcsState) 
     let mut left = ui.new_child(UiBuilder::new().max_rect(left));
     let columns = match document.session.target {
         Target::RightAnglePlate => Columns::EdgePoints,
-        Target::Point => Columns::Tips,
+        Target::Point | Target::Pose { .. } => Columns::Tips,
         Target::Workpiece => Columns::Scans,
         Target::Ball { .. } | Target::Rgbd { .. } => Columns::Arcs,
     };

@@ -11,9 +11,10 @@ use crate::report::judgement::Judgement;
 use crate::session::Target;
 use crate::text::compare as text;
 use crate::text::methods::{method_description, method_short_name};
+use crate::text::sequence as sequence_words;
 use crate::ui::save_picture::saveable;
 use crate::ui::verdict::{self, NextStep};
-use crate::ui::{PanelContext, theme, widgets};
+use crate::ui::{PanelContext, rail, theme, widgets};
 
 use super::bars::{self, BarSource};
 use super::cards::{self, CardOptions};
@@ -116,6 +117,10 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut CompareStat
         let improvement = model.improvement.as_ref();
         let is_explained = &mut state.is_explained;
         verdict::show(ui, band.as_ref(), improvement, next.as_ref(), is_out_of_date, is_explained, context);
+        if rail::is_sequence(workbench) {
+            ui.label(theme::dim(ui, sequence_words::NO_TABLES));
+            return;
+        }
         let width = ui.available_width();
         let shown = state.shown(&model, width);
         toggles(ui, &model, &shown, state);

@@ -140,7 +140,7 @@ struct Frame {
     quaternion_wxyz: [f64; 4],
 }
 
-const KINDS: [(Kind, &str); 11] = [
+const KINDS: [(Kind, &str); 12] = [
     (Kind::Session, "session"),
     (Kind::PoseTable, "pose-table"),
     (Kind::PrintedTable, "printed-table"),
@@ -151,6 +151,7 @@ const KINDS: [(Kind, &str); 11] = [
     (Kind::Profile, "profile"),
     (Kind::ProfileColumns, "profile-columns"),
     (Kind::Yaml, "yaml"),
+    (Kind::PosePairs, "pose-pairs"),
     (Kind::RosBag, "ros-bag"),
 ];
 
@@ -167,7 +168,7 @@ const FORMS: [(OrientationForm, &str); 3] = [
     (OrientationForm::QuaternionXyzw, "quaternion-xyzw"),
 ];
 
-const ROLES: [(Role, &str); 18] = [
+const ROLES: [(Role, &str); 25] = [
     (Role::Ignore, "ignore"),
     (Role::Label, "label"),
     (Role::Position(0), "x"),
@@ -180,6 +181,13 @@ const ROLES: [(Role, &str); 18] = [
     (Role::Point(0), "point-x"),
     (Role::Point(1), "point-y"),
     (Role::Point(2), "point-z"),
+    (Role::Target(0), "target-x"),
+    (Role::Target(1), "target-y"),
+    (Role::Target(2), "target-z"),
+    (Role::Target(3), "target-orientation-1"),
+    (Role::Target(4), "target-orientation-2"),
+    (Role::Target(5), "target-orientation-3"),
+    (Role::Target(6), "target-orientation-4"),
     (Role::Side, "side"),
     (Role::Edge, "edge"),
     (Role::Used, "used"),

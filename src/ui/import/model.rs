@@ -17,6 +17,7 @@ pub fn role_choices(notation: &PoseNotation) -> Vec<Role> {
     choices.extend((0..3).map(Role::Position));
     choices.extend((0..notation.orientation_names().len()).map(Role::Orientation));
     choices.extend((0..3).map(Role::Point));
+    choices.extend((0..3 + notation.orientation_names().len()).map(Role::Target));
     choices.extend([Role::Profile, Role::Step, Role::Side, Role::Edge, Role::Used, Role::Notation]);
     choices
 }

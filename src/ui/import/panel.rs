@@ -32,11 +32,12 @@ enum TargetKind {
     Ball,
     RightAnglePlate,
     Point,
+    Pose,
     Workpiece,
 }
 
-const TARGETS: [TargetKind; 4] =
-    [TargetKind::Ball, TargetKind::RightAnglePlate, TargetKind::Point, TargetKind::Workpiece];
+const TARGETS: [TargetKind; 5] =
+    [TargetKind::Ball, TargetKind::RightAnglePlate, TargetKind::Point, TargetKind::Pose, TargetKind::Workpiece];
 
 /// What is typed in the preview of one draft.
 #[derive(Debug, Default)]
@@ -73,6 +74,9 @@ impl ImportState {
         if outcome.as_ref().is_ok_and(|imported| imported.has_edges()) {
             self.target = TargetKind::RightAnglePlate;
         }
+        if outcome.as_ref().is_ok_and(|imported| imported.has_target_poses()) {
+            self.target = TargetKind::Pose;
+        }
         if self.radius.is_empty() && has_only_points(outcome) {
             USUAL_RADIUS_MM.clone_into(&mut self.radius);
         }
@@ -88,6 +92,7 @@ impl ImportState {
             TargetKind::Ball => self.ball()?,
             TargetKind::RightAnglePlate => Target::RightAnglePlate,
             TargetKind::Point => Target::Point,
+            TargetKind::Pose => Target::pose(),
             TargetKind::Workpiece => Target::Workpiece,
         };
         check_edges(stations, &target).map_err(|_| words::EDGES_OF_NO_PLATE)?;
@@ -350,6 +355,7 @@ fn new_session_fields(ui: &mut Ui, state: &mut ImportState) {
             TargetKind::Ball => words::BALL,
             TargetKind::RightAnglePlate => words::PLATE,
             TargetKind::Point => words::POINT,
+            TargetKind::Pose => words::POSE,
             TargetKind::Workpiece => words::WORKPIECE,
         }
         .to_owned()

@@ -78,7 +78,7 @@ fn capture_section(
     }
     let num_points = station.captures.get(capture_idx).map_or(0, |capture| match &capture.reading {
         Reading::Profile(profile) => profile.len(),
-        Reading::Point(_) => 1,
+        Reading::Point(_) | Reading::Pose(_) => 1,
     });
     let reading = results.and_then(|results| results.measured.reading(station_idx, capture_idx));
     match reading {
@@ -87,6 +87,10 @@ fn capture_section(
         Some(calibrate::Reading::Point(point)) => {
             let label = words::target_in_sensor(&document.session.target);
             triple_row(ui, label, (*point).into(), POSE_DECIMALS, "mm");
+        }
+        Some(calibrate::Reading::Pose(seen)) => {
+            let label = words::target_in_sensor(&document.session.target);
+            triple_row(ui, label, seen.translation_mm().into(), POSE_DECIMALS, "mm");
         }
         Some(calibrate::Reading::Edge(edge)) => edge_rows(ui, edge, num_points),
         None => {}

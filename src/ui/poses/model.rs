@@ -14,7 +14,8 @@ pub fn labels_of(warning: &Warning) -> &[String] {
         | Warning::TravelOffNormal { label, .. }
         | Warning::PeakNotCovered { label, .. }
         | Warning::StepDiffersFromPose { label, .. }
-        | Warning::StationStandsOut { label, .. } => std::slice::from_ref(label),
+        | Warning::StationStandsOut { label, .. }
+        | Warning::PoseRejected { label, .. } => std::slice::from_ref(label),
         Warning::BlindInY { labels, .. } | Warning::SideAmbiguous { labels, .. } => labels,
         Warning::FewStations { .. }
         | Warning::FewEdgePoints { .. }
@@ -22,6 +23,9 @@ pub fn labels_of(warning: &Warning) -> &[String] {
         | Warning::LittleRotation { .. }
         | Warning::NearlyOneAxis { .. }
         | Warning::RadiusDisagrees { .. }
+        | Warning::StreamInverted { .. }
+        | Warning::TargetScale { .. }
+        | Warning::TimeOffsetUnknown
         | Warning::NotConverged { .. } => &[],
     }
 }

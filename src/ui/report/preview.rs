@@ -12,7 +12,7 @@ use crate::report::document::{Document, Options, Section, SectionId};
 use crate::text::report_panel as words;
 use crate::ui::actions::Action;
 use crate::ui::widgets::{self, FromTop, name_field};
-use crate::ui::{PanelContext, theme};
+use crate::ui::{PanelContext, rail, theme};
 
 use super::page::Page;
 
@@ -122,7 +122,8 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut Prev
     let workbench = context.workbench;
     let Some(document) = workbench.document() else { return };
     if document.session.stations.is_empty() && document.session.further.is_empty() {
-        widgets::nothing(ui, words::NOTHING_TO_REPORT);
+        let is_sequence = rail::is_sequence(context.workbench);
+        widgets::nothing(ui, if is_sequence { words::NO_REPORT_OF_SEQUENCE } else { words::NOTHING_TO_REPORT });
         return;
     }
     let report = workbench.report();

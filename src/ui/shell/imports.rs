@@ -46,7 +46,7 @@ impl Shell {
             Purpose::ExportPoints => self.apply_to_each(paths, |path| scan(ScanCommand::Export(path))),
             Purpose::OpenPoints => self.apply_to_each(paths, |path| scan(ScanCommand::OpenPoints(path))),
             Purpose::Calibration => self.apply_to_each(paths, |path| scan(ScanCommand::UseCalibration(path))),
-            Purpose::ToolFrame | Purpose::Picture => {
+            Purpose::ToolFrame | Purpose::Picture | Purpose::SequenceFile => {
                 if let Some(file) = self.to_write.take() {
                     let write = |path| Command::WriteFile { path, contents: Arc::clone(&file.contents) };
                     self.apply_to_each(paths, write);
@@ -87,7 +87,9 @@ impl Shell {
             Purpose::ExportPoses => folder.join(self.suggested_csv()),
             Purpose::ExportPoints => folder.join(self.suggested_ply()),
             Purpose::ReportFolder => folder.join(self.suggested_report()),
-            Purpose::ToolFrame | Purpose::Picture => folder.join(self.to_write.as_ref().map_or("", |file| &file.name)),
+            Purpose::ToolFrame | Purpose::Picture | Purpose::SequenceFile => {
+                folder.join(self.to_write.as_ref().map_or("", |file| &file.name))
+            }
             _ => folder,
         };
         path.display().to_string()

@@ -14,6 +14,7 @@ use crate::app::cell::CellCommand;
 use crate::app::jobs::{JobOutcome, Slot, Wake};
 use crate::app::{Command, NoticeKind, OnDisk, Workbench};
 use crate::text::report_panel as report_words;
+use crate::text::sequence as sequence_words;
 use crate::text::shell as words;
 
 use self::live_cell::CellWatch;
@@ -32,11 +33,12 @@ use super::rail::{self, Step};
 use super::report::ReportState;
 use super::save_file::{self, SaveFile};
 use super::save_picture::{self, Drawn};
+use super::sequence::SequenceState;
 use super::start::panel::StartState;
 use super::verify::VerifyState;
 use super::{
-    PanelContext, Selection, arcs, capture, compare, diagnosis, inspector, poses, report, start, status, theme,
-    top_bar, verify, widgets,
+    PanelContext, Selection, arcs, capture, compare, diagnosis, inspector, poses, report, sequence, start, status,
+    theme, top_bar, verify, widgets,
 };
 
 /// Height of the bar at the top, points.
@@ -80,6 +82,7 @@ pub struct Shell {
     start: StartState,
     poses: PosesState,
     arcs: ArcsState,
+    sequence: SequenceState,
     capture: CaptureState,
     cell_watch: CellWatch,
     compare: CompareState,
@@ -142,6 +145,7 @@ impl Shell {
             start,
             poses: PosesState::default(),
             arcs: ArcsState::default(),
+            sequence: SequenceState::default(),
             capture: CaptureState::default(),
             cell_watch: CellWatch::default(),
             compare: CompareState::default(),
@@ -349,8 +353,14 @@ impl Shell {
                     capture::show(ui, &mut context, &mut self.persisted.cell, &mut self.capture);
                 }
                 Step::Poses => poses::panel::show(ui, &mut context, &mut self.poses),
+                Step::Arcs if rail::is_sequence(context.workbench) => {
+                    sequence::show(ui, &mut context, &mut self.sequence);
+                }
                 Step::Arcs => arcs::show(ui, &mut context, &mut self.arcs),
                 Step::Compare => compare::show(ui, &mut context, &mut self.compare),
+                Step::Diagnosis if rail::is_sequence(context.workbench) => {
+                    widgets::nothing(ui, sequence_words::NO_DIAGNOSIS);
+                }
                 Step::Diagnosis => diagnosis::show(ui, &mut context, &mut self.diagnosis),
                 Step::Verify => verify::show(ui, &mut context, &mut self.verify),
                 Step::Report => report::show(ui, &mut context, &mut self.report, &mut self.persisted.report),

@@ -106,6 +106,7 @@ fn method_for(target: &Target, selected: Method) -> Method {
         Target::Ball { .. } => &Method::BALL,
         Target::RightAnglePlate => &Method::PLATE,
         Target::Point => &Method::POINT,
+        Target::Pose { .. } => &Method::MOTION,
         Target::Workpiece | Target::Rgbd { .. } => &[],
     };
     if of_target.contains(&selected) {

@@ -100,7 +100,7 @@ impl Field {
             Target::Ball { .. } => &[Self::BallRadius, Self::BallRadiusStd],
             Target::Point => &[Self::TouchedPoint],
             Target::Workpiece => &[Self::NominalAngle, Self::NominalPitch, Self::NominalHeight, Self::NominalDiameter],
-            Target::RightAnglePlate | Target::Rgbd { .. } => &[],
+            Target::RightAnglePlate | Target::Pose { .. } | Target::Rgbd { .. } => &[],
         }
     }
 
@@ -265,7 +265,7 @@ impl TargetKind {
             Target::Ball { .. } => Some(Self::Ball),
             Target::RightAnglePlate => Some(Self::Plate),
             Target::Point => Some(Self::Point),
-            Target::Workpiece | Target::Rgbd { .. } => None,
+            Target::Pose { .. } | Target::Workpiece | Target::Rgbd { .. } => None,
         }
     }
 

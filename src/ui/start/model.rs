@@ -37,10 +37,11 @@ pub fn preview_samples() -> Vec<Option<SamplePreview>> {
 #[must_use]
 pub fn preview(session: &Session) -> SamplePreview {
     let readings = || session.stations.iter().flat_map(|station| &station.captures).map(|capture| &capture.reading);
-    let is_points_only = readings().all(|reading| matches!(reading, Reading::Point(_)));
+    let is_points_only = readings().all(|reading| matches!(reading, Reading::Point(_) | Reading::Pose(_)));
     let strokes = if is_points_only {
         let points = readings().filter_map(|reading| match reading {
             Reading::Point(point) => Some([point.x, point.z]),
+            Reading::Pose(seen) => Some([seen.translation_mm().x, seen.translation_mm().z]),
             Reading::Profile(_) => None,
         });
         vec![points.collect()]
@@ -62,7 +63,7 @@ fn some_profiles(session: &Session) -> Vec<Vec<[f64; 2]>> {
         readings
             .filter_map(|reading| match reading {
                 Reading::Profile(profile) => Some(Arc::clone(profile)),
-                Reading::Point(_) => None,
+                Reading::Point(_) | Reading::Pose(_) => None,
             })
             .collect()
     };

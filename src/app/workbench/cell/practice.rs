@@ -96,6 +96,7 @@ fn session_for(truth: &SimTruth, options: &SimOptions) -> Session {
         flange_from_sensor: Transform::from_rigid(truth.flange_from_sensor),
         target_in_base_mm: part_in_base.map_or(truth.ball_in_base, |part| part.translation.vector),
         base_from_plate: part_in_base.filter(|_| part == Some(PartKind::Plate)),
+        base_from_target: None,
         unknown: UnknownFields::new(),
     });
     session

@@ -183,7 +183,7 @@ impl Workbench {
                 Some(MeasuredReading::Arc(arc)) => Ok(Found::Arc(Arc::clone(arc))),
                 Some(MeasuredReading::Edge(edge)) => Ok(Found::Edge(Arc::clone(edge))),
                 Some(MeasuredReading::Refused(refusal)) => Err(refusal.clone()),
-                Some(MeasuredReading::Point(_)) | None => {
+                Some(MeasuredReading::Point(_) | MeasuredReading::Pose(_)) | None => {
                     sought.map_or_else(|| Err(ArcRefusal::NoBall.into()), |sought| sought.find(profile))
                 }
             })

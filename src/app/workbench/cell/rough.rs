@@ -192,7 +192,7 @@ impl Workbench {
     fn peak_of(&self, station: &Station) -> Option<&FoundPeak> {
         let profile = |capture: &Capture| match &capture.reading {
             Reading::Profile(profile) => Some(Arc::clone(profile)),
-            Reading::Point(_) => None,
+            Reading::Point(_) | Reading::Pose(_) => None,
         };
         let profiles: Vec<_> = station.captures.iter().filter_map(profile).collect();
         let is_of_station = |peak: &&FoundPeak| profiles.iter().any(|one| Arc::ptr_eq(one, &peak.first_profile));

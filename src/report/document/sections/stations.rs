@@ -36,7 +36,7 @@ type Parts = (Vec<Column>, Vec<Vec<Cell>>, &'static str);
 
 /// A ball's or a tip's.
 fn stations(target: &TargetEvidence, solution: &Solution) -> Parts {
-    let has_sides = solution.method != Method::FixedPoint;
+    let has_sides = solution.method.has_sides();
     // The sweeps are those of the method that looks at them.
     let curves = solution_of(target.results(), Method::BallMaxArc);
     let mut columns = vec![Column::words(words::NUMBER, "station")];

@@ -120,7 +120,9 @@ pub fn profile_model(
         Some(calibrate::Reading::Arc(arc)) => (section_model(arc, method).map(Found::Section), arc.classes.as_slice()),
         Some(calibrate::Reading::Edge(edge)) => (Ok(Found::Edge(edge_model(edge))), edge.classes.as_slice()),
         Some(calibrate::Reading::Refused(refusal)) => (Err(refusal.to_string()), [].as_slice()),
-        Some(calibrate::Reading::Point(_)) | None => (Err(text::NOT_MEASURED.to_owned()), [].as_slice()),
+        Some(calibrate::Reading::Point(_) | calibrate::Reading::Pose(_)) | None => {
+            (Err(text::NOT_MEASURED.to_owned()), [].as_slice())
+        }
     };
     let class_of = |point_idx: usize| classes.get(point_idx).copied().unwrap_or(PointClass::Unused);
     drawn(profile, found, class_of, ball_radius_mm)

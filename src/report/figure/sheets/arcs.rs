@@ -59,7 +59,7 @@ fn seen(target: &TargetEvidence) -> Vec<Seen> {
         let profiles =
             station.captures.iter().enumerate().filter_map(|(capture_idx, capture)| match &capture.reading {
                 Reading::Profile(profile) => Some((capture_idx, profile)),
-                Reading::Point(_) => None,
+                Reading::Point(_) | Reading::Pose(_) => None,
             });
         let models = profiles.map(|(capture_idx, profile)| {
             let reading = target.measured.reading(station_idx, capture_idx);

@@ -83,10 +83,8 @@ fn sketch(evidence: &Evidence) -> Option<Figure> {
 /// The ends of what the laser line lights at a station's first capture, in the sensor frame, mm.
 fn laser_line(target: &TargetEvidence, station_idx: usize) -> Option<[Vec3; 2]> {
     match &target.session.stations.get(station_idx)?.captures.first()?.reading {
-        Reading::Point(point) => {
-            let half = Vec3::new(0.12 * point.norm().max(1.0), 0.0, 0.0);
-            Some([*point - half, *point + half])
-        }
+        Reading::Point(point) => Some(about(*point)),
+        Reading::Pose(sensor_from_target) => Some(about(sensor_from_target.translation_mm())),
         Reading::Profile(profile) => {
             let (mut range, mut sum, mut count) = ([f64::INFINITY, f64::NEG_INFINITY], 0.0, 0.0);
             for (_, x, z) in profile.valid_points() {
@@ -98,6 +96,12 @@ fn laser_line(target: &TargetEvidence, station_idx: usize) -> Option<[Vec3; 2]> 
             (count > 1.0 && z.is_finite()).then(|| range.map(|x| Vec3::new(x, 0.0, z)))
         }
     }
+}
+
+/// A short line about a point that was reduced elsewhere.
+fn about(point_in_sensor: Vec3) -> [Vec3; 2] {
+    let half = Vec3::new(0.12 * point_in_sensor.norm().max(1.0), 0.0, 0.0);
+    [point_in_sensor - half, point_in_sensor + half]
 }
 
 /// The target where the calibration has it; on a flange that carries it, at a pose.

@@ -77,6 +77,10 @@ const fn warning_title(warning: &Warning) -> &'static str {
         Warning::RadiusDisagrees { .. } => "Wrong ball radius",
         Warning::StepDiffersFromPose { .. } => "Steps differ from poses",
         Warning::StationStandsOut { .. } => "Station stands out",
+        Warning::PoseRejected { .. } => "Pose left out",
+        Warning::StreamInverted { .. } => "Inverted poses",
+        Warning::TargetScale { .. } => "Wrong size of the target",
+        Warning::TimeOffsetUnknown => "Clocks not matched",
         Warning::NotConverged { .. } => "Solver did not settle",
     }
 }
@@ -261,6 +265,7 @@ fn unsolved_message(error: &SolveError, mount: Mount) -> String {
             )
         }
         SolveError::MixedMounts => "Some targets are seen from the flange, others from beside the robot.".to_owned(),
+        SolveError::TimesNotRising => "The times of a list of poses do not rise.".to_owned(),
         SolveError::Diverged => "The solver found no finite answer.".to_owned(),
     }
 }
@@ -364,6 +369,7 @@ const fn unsolved_remedy(error: &SolveError) -> &'static str {
             "Add stations with other tilts, and with the target elsewhere in the profile."
         }
         SolveError::MixedMounts => "Solve the targets of each sensor by themselves.",
+        SolveError::TimesNotRising => "Sort each list of poses by time.",
         SolveError::Diverged => "Check poses and units.",
     }
 }

@@ -1,6 +1,6 @@
 //! The buttons that mend a fault.
 
-use crate::calibrate::SideChoice;
+use crate::calibrate::{Mount, SideChoice};
 use crate::diagnose::Remedy;
 use crate::session::Session;
 use crate::text::digits::fixed;
@@ -24,6 +24,11 @@ pub fn remedy_label(remedy: &Remedy, session: &Session) -> String {
         Remedy::TakePosesFrom(pairs) => exchange_label(session, pairs),
         Remedy::ScaleProfiles(factor) => format!("Scale profiles by {}", fixed(*factor, FACTOR_DECIMALS)),
         Remedy::MirrorProfiles(axis) => format!("Turn {} axis of profiles", axis_name(*axis)),
+        Remedy::ToOtherMount => match session.mount {
+            Mount::OnFlange => "Set mounting to fixed beside the robot".to_owned(),
+            Mount::Fixed => "Set mounting to on the flange".to_owned(),
+        },
+        Remedy::ScaleTargets(factor) => format!("Scale the target by {}", fixed(*factor, FACTOR_DECIMALS)),
         Remedy::RemoveTool { from_station_idx, .. } => {
             format!("Take TOOL out of poses from station {}", station_label(session, *from_station_idx))
         }

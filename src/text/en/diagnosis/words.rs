@@ -123,7 +123,7 @@ pub(in super::super) const fn target_word(target: &Target) -> &'static str {
         Target::Ball { .. } => "ball",
         Target::RightAnglePlate => "plate",
         Target::Point => "tip",
-        Target::Workpiece | Target::Rgbd { .. } => "target",
+        Target::Pose { .. } | Target::Workpiece | Target::Rgbd { .. } => "target",
     }
 }
 
@@ -140,6 +140,7 @@ pub(super) fn reading_word(session: &Session, station_idx: usize) -> &'static st
     let capture = session.stations.get(station_idx).and_then(|station| station.captures.first());
     match capture.map(|capture| &capture.reading) {
         Some(Reading::Point(_)) => "point",
+        Some(Reading::Pose(_)) => "target's pose",
         _ => "profile",
     }
 }

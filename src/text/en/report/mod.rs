@@ -362,6 +362,10 @@ pub const fn references(target: &Target) -> &'static [&'static str] {
             CHEN,
             "The bundle of both edges and the uncertainty are Handeye's own: docs/plate.md, docs/uncertainty.md.",
         ],
+        Target::Pose { .. } => &[
+            "Closed forms: Tsai & Lenz 1989; Park & Martin 1994; Horaud & Dornaika 1995; Daniilidis 1999; Andreff, Horaud & Espiau 2001; Li, Wang & Wu 2010; Shah 2013.",
+            "The refined answer and its uncertainty are Handeye's own: docs/motion.md, docs/uncertainty.md.",
+        ],
         Target::Point => &[
             CHEN,
             "The fixed point of a tip is the fixed point of a ball's centre with the tip in its place (docs/methods.md); how a tip is found in a profile and the uncertainty are Handeye's own: docs/edges.md, docs/uncertainty.md.",

@@ -45,6 +45,9 @@ pub const fn errors_legend(target: &Target) -> [&'static str; 2] {
         Target::Point => {
             "max: largest coordinate (one axis) off the first station's tip, in sample, as in the papers · RMS: of the distances (3D) of all tips from their mean, in sample"
         }
+        Target::Pose { .. } => {
+            "max: largest coordinate relative to the first station · RMS: scatter of the target's origin about its place, 3D"
+        }
         Target::Ball { .. } | Target::Workpiece | Target::Rgbd { .. } => {
             "max: largest coordinate (one axis) off the first station's ball, in sample, as in the papers · RMS: of the distances (3D) of all balls from their mean, in sample"
         }
@@ -110,6 +113,7 @@ const fn seen(method: Method) -> &'static str {
     match method {
         Method::PlateOrthogonal | Method::PlateBundle => "edge point",
         Method::FixedPoint => "tip",
+        Method::Motion => "target",
         Method::BallFixedPoint | Method::BallMaxArcStep | Method::BallMaxArc | Method::BallBundle => "ball",
     }
 }

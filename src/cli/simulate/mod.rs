@@ -1,5 +1,8 @@
 //! `handeye simulate`: writes a simulated session with its truth.
 
+mod pose;
+mod room;
+
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -13,6 +16,9 @@ use crate::simulate::{Dirt, Fault, RoughMounting, SimulationOptions, SimulationT
 
 use super::{EXIT_WRONG_INPUT, fail};
 
+pub use pose::PoseArgs;
+pub use room::{FaultArg, RoomArgs};
+
 /// What is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum TargetArg {
@@ -25,6 +31,23 @@ pub enum TargetArg {
     Point,
     /// A part that is scanned to see what a calibration is worth; --part says which.
     Workpiece,
+    /// A board whose whole pose a camera sees.
+    Pose,
+    /// A room, seen by an RGB-D camera: its images go into a folder beside the session file.
+    Room,
+}
+
+impl TargetArg {
+    const fn as_argument(self) -> &'static str {
+        match self {
+            Self::Ball => "--target ball",
+            Self::Plate => "--target plate",
+            Self::Point => "--target point",
+            Self::Workpiece => "--target workpiece",
+            Self::Pose => "--target pose",
+            Self::Room => "--target room",
+        }
+    }
 }
 
 /// A workpiece.
@@ -206,6 +229,12 @@ pub struct SimulateArgs {
     /// The session's notes.
     #[arg(long)]
     pub notes: Option<String>,
+    /// What a board is seen with.
+    #[command(flatten)]
+    pub pose: PoseArgs,
+    /// What a room is recorded with.
+    #[command(flatten)]
+    pub room: RoomArgs,
 }
 
 /// Why nothing is simulated.
@@ -262,40 +291,59 @@ pub enum SimulateRefusal {
     },
 }
 
-/// Simulates a session and writes it.
+/// Simulates a session and writes it, a room with its folder of images.
 #[must_use]
 pub fn run(args: &SimulateArgs) -> ExitCode {
-    match simulated_session(args) {
-        Ok(session) => match save(&session, &args.out) {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(error) => fail(EXIT_WRONG_INPUT, &error),
-        },
-        Err(refusal) => fail(EXIT_WRONG_INPUT, &refusal),
+    match write(args) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(reason) => fail(EXIT_WRONG_INPUT, &reason),
     }
 }
 
-/// The session that the arguments ask for.
+/// # Errors
+/// In one line.
+fn write(args: &SimulateArgs) -> Result<(), String> {
+    if args.target == TargetArg::Room {
+        return room::write(args);
+    }
+    let session = simulated_session(args).map_err(|refusal| refusal.to_string())?;
+    save(&session, &args.out).map_err(|error| error.to_string())
+}
+
+/// The session that the arguments ask for; that of a room names the folder that [`run`] writes.
 ///
 /// # Errors
 /// [`SimulateRefusal`] where the arguments do not go together.
 pub fn simulated_session(args: &SimulateArgs) -> Result<Session, SimulateRefusal> {
-    let mut session = simulate(&options(args)?);
+    match target_of(args) {
+        Some(target) => Ok(named(simulate(&options(args, target)?), args)),
+        None if args.target == TargetArg::Pose => pose::session(args),
+        None => Ok(room::session(args, &room::recording(args)?)),
+    }
+}
+
+fn named(mut session: Session, args: &SimulateArgs) -> Session {
     if let Some(name) = &args.name {
         session.name.clone_from(name);
     }
     if let Some(notes) = &args.notes {
         session.notes.clone_from(notes);
     }
-    Ok(session)
+    session
 }
 
-fn options(args: &SimulateArgs) -> Result<SimulationOptions, SimulateRefusal> {
-    let target = match args.target {
-        TargetArg::Ball => SimulationTarget::Ball,
-        TargetArg::Plate => SimulationTarget::Part(PartKind::Plate),
-        TargetArg::Point => SimulationTarget::Part(PartKind::Pin),
-        TargetArg::Workpiece => SimulationTarget::Part(args.part.unwrap_or_default().kind()),
-    };
+/// What profiles are taken of; `None` for a board and a room, which a camera sees.
+fn target_of(args: &SimulateArgs) -> Option<SimulationTarget> {
+    match args.target {
+        TargetArg::Ball => Some(SimulationTarget::Ball),
+        TargetArg::Plate => Some(SimulationTarget::Part(PartKind::Plate)),
+        TargetArg::Point => Some(SimulationTarget::Part(PartKind::Pin)),
+        TargetArg::Workpiece => Some(SimulationTarget::Part(args.part.unwrap_or_default().kind())),
+        TargetArg::Pose | TargetArg::Room => None,
+    }
+}
+
+fn options(args: &SimulateArgs, target: SimulationTarget) -> Result<SimulationOptions, SimulateRefusal> {
     let further: Vec<SimulationTarget> = args.further.iter().map(|further| further.target()).collect();
     let usual = SimulationOptions::of(target);
     // Whatever a plate is measured along with, its methods have something to start from.
@@ -363,12 +411,13 @@ fn refuse_without_effect(
         !args.reduced || further.iter().any(|further| *further == SimulationTarget::Ball || further.is_workpiece());
     let has_ball = is_ball || further.contains(&SimulationTarget::Ball);
     let ball = "--target ball";
-    let own = match args.target {
-        TargetArg::Ball => ball,
-        TargetArg::Plate => "--target plate",
-        TargetArg::Point => "--target point",
-        TargetArg::Workpiece => "--target workpiece",
-    };
+    let own = args.target.as_argument();
+    if let Some(option) = args.room.first_given() {
+        return Err(SimulateRefusal::NoEffect { option, found: own, expected: "--target room" });
+    }
+    if let Some(option) = args.pose.first_given() {
+        return Err(SimulateRefusal::NoEffect { option, found: own, expected: "--target pose" });
+    }
     let reduced = "--reduced";
     [
         ("--part", args.part.is_some(), args.target == TargetArg::Workpiece, own, "--target workpiece"),
@@ -468,6 +517,8 @@ fn within(text: &str, [min, max]: [f64; 2]) -> Result<f64, String> {
 mod tests {
     use clap::Parser;
 
+    use crate::session::Target;
+
     use super::*;
 
     #[derive(Parser)]
@@ -478,6 +529,10 @@ mod tests {
 
     fn parsed(arguments: &str) -> Result<SimulateArgs, clap::Error> {
         Line::try_parse_from(format!("simulate --out x.json {arguments}").split_whitespace()).map(|line| line.args)
+    }
+
+    fn options(args: &SimulateArgs) -> Result<SimulationOptions, SimulateRefusal> {
+        super::options(args, target_of(args).expect("it has stations"))
     }
 
     #[test]
@@ -519,11 +574,60 @@ mod tests {
             ("--rough-mounting 5", "expected degrees up to 90 and mm up to 1000"),
             ("--rough-mounting 5,nan", "--rough-mounting"),
             ("--further mud", "--further"),
+            ("--target room --size 320", "expected a width and a height of 32 to 2048 pixels"),
+            ("--target room --frames 0", "--frames"),
+            ("--target room --frame-fault dark:9-3", "expected one of dark, blank-wall"),
+            ("--target room --on-robot --hand-held", "--hand-held"),
+            ("--target room --robot-clock-ahead-ms 20", "--on-robot"),
             ("--fault gremlin", "expected one of pose-convention, quaternion-order"),
         ] {
             let refusal = parsed(arguments).expect_err(arguments).to_string();
             assert!(refusal.contains(culprit), "{arguments}: {refusal}");
         }
+    }
+
+    #[test]
+    fn a_room_takes_no_arguments_of_other_targets() {
+        let refused = |arguments: &str| {
+            let args = parsed(&format!("--target room {arguments}")).expect("well formed");
+            simulated_session(&args).expect_err(arguments).to_string()
+        };
+        for (arguments, fragment) in [
+            (
+                "--stations 5",
+                "--stations: found it with --target room, where it has no effect, expected a target with stations",
+            ),
+            ("--mount fixed", "--mount: found it with --target room"),
+            ("--fault drift", "expected --target ball or no --fault"),
+        ] {
+            assert!(refused(arguments).contains(fragment), "{}", refused(arguments));
+        }
+    }
+
+    #[test]
+    fn a_board_takes_no_arguments_of_other_targets() {
+        let session =
+            |arguments: &str| simulated_session(&parsed(&format!("--target pose {arguments}")).expect("well formed"));
+        for (arguments, fragment) in [
+            ("--steps 5", "--steps: found it with --target pose, where it has no effect"),
+            ("--frames 9", "expected --target room or no --frames"),
+            ("--stations 5 --bad-pose 6", "expected 1 to 5"),
+        ] {
+            let refusal = session(arguments).expect_err(arguments).to_string();
+            assert!(refusal.contains(fragment), "{arguments}: {refusal}");
+        }
+        let session = session("--stations 4 --mount fixed --target-std-mm 0.3").expect("valid");
+        assert_eq!((session.stations.len(), session.mount), (4, Mount::Fixed));
+        assert!(session.target.is_pose());
+    }
+
+    #[test]
+    fn the_session_of_a_room_names_the_folder_beside_it() {
+        let args = parsed("--target room --on-robot --name arm").expect("well formed");
+        let session = simulated_session(&args).expect("valid");
+        assert_eq!(session.target, Target::Rgbd { sequence: "x-sequence".to_owned() });
+        assert_eq!(session.name, "arm");
+        assert!(session.unknown.contains_key("truth"));
     }
 
     #[test]
@@ -545,6 +649,9 @@ mod tests {
             ("--section-offset-mm 15", "expected less than the radius of 15 mm"),
             ("--step-mm 16", "expected at most the radius of 15 mm"),
             ("--stations 5 --bad-pose 6", "expected 1 to 5"),
+            ("--target-std-mm 1", "--target-std-mm: found it with --target ball, where it has no effect"),
+            ("--size 320x240", "--size: found it with --target ball, where it has no effect"),
+            ("--target plate --frame-fault dark:3", "expected --target room or no --frame-fault"),
         ] {
             let refusal = options(&parsed(arguments).expect("well formed")).expect_err(arguments).to_string();
             assert!(refusal.contains(fragment) && !refusal.contains('\n'), "{arguments}: {refusal}");

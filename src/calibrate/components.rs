@@ -4,14 +4,12 @@
 //! the variances. A few points do not tell the noises apart, so their proportions have a prior: about those that they begin
 //! with. Their common scale has none.
 
-use nalgebra::{Matrix2, Matrix3, SMatrix, Vector2, Vector3};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
-use crate::calibrate::SolveError;
+use super::SolveError;
+use super::plate::descent::inverse_of;
 
-use super::descent::inverse_of;
-use super::points::NUM_UNKNOWNS;
-
-/// Position, orientation, point.
+/// As many noises as a plate's point or a target's pose has.
 pub(super) const NUM_COMPONENTS: usize = 3;
 /// How far the variances are usually off their proportions: a factor of about three in the standard deviation.
 const PROPORTION_STD: f64 = 2.2;
@@ -24,23 +22,24 @@ const MAX_STEP: f64 = 2.3;
 /// … and ends at 1e-12 or 1e12 times what it began with: the data have no noise, or no bounds.
 const MAX_LOG_FACTOR: f64 = 27.6;
 
-/// A point's distances from its edge, and what they may be off by.
+/// The `R` residuals of one datum (a point's distances from its edge, a pose's errors), and what they may be off by; `U` is
+/// the number of unknowns.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct PointModel {
-    /// Distances from the edge, mm.
-    pub off_edge: Vector2<f64>,
+pub(super) struct PointModel<const R: usize, const U: usize> {
+    /// The residuals.
+    pub residual: SVector<f64, R>,
     /// How they follow the unknowns.
-    pub by_unknowns: SMatrix<f64, 2, NUM_UNKNOWNS>,
-    /// Their covariance as far as it is known, mm².
-    pub known: Matrix2<f64>,
-    /// What each component adds where its factor is one, mm².
-    pub open: [Matrix2<f64>; NUM_COMPONENTS],
+    pub by_unknowns: SMatrix<f64, R, U>,
+    /// Their covariance as far as it is known.
+    pub known: SMatrix<f64, R, R>,
+    /// What each component adds where its factor is one.
+    pub open: [SMatrix<f64, R, R>; NUM_COMPONENTS],
 }
 
-impl PointModel {
+impl<const R: usize, const U: usize> PointModel<R, U> {
     /// The covariance with the components' factors.
-    pub fn covariance(&self, log_factors: &Vector3<f64>) -> Matrix2<f64> {
-        let open: Matrix2<f64> = self.open.iter().zip(log_factors).map(|(part, log)| part * log.exp()).sum();
+    pub fn covariance(&self, log_factors: &Vector3<f64>) -> SMatrix<f64, R, R> {
+        let open: SMatrix<f64, R, R> = self.open.iter().zip(log_factors).map(|(part, log)| part * log.exp()).sum();
         self.known + open
     }
 }
@@ -55,13 +54,13 @@ pub(super) struct Found {
 }
 
 /// The points, and the components that are open.
-pub(super) struct Components {
-    points: Vec<PointModel>,
+pub(super) struct Components<const R: usize, const U: usize> {
+    points: Vec<PointModel<R, U>>,
     is_open: [bool; NUM_COMPONENTS],
 }
 
-impl Components {
-    pub fn new(points: Vec<PointModel>) -> Self {
+impl<const R: usize, const U: usize> Components<R, U> {
+    pub fn new(points: Vec<PointModel<R, U>>) -> Self {
         let is_open = [0, 1, 2].map(|idx| points.iter().any(|point| point.open[idx].trace() > 0.0));
         Self { points, is_open }
     }
@@ -70,11 +69,11 @@ impl Components {
         self.is_open.contains(&true)
     }
 
-    /// Sum of the squared distances over their covariances.
+    /// Sum of the squared residuals over their covariances.
     pub fn chi_square(&self, log_factors: &Vector3<f64>) -> f64 {
-        let of_point = |point: &PointModel| {
-            let weight = point.covariance(log_factors).try_inverse().unwrap_or_default();
-            point.off_edge.dot(&(weight * point.off_edge))
+        let of_point = |point: &PointModel<R, U>| {
+            let weight = point.covariance(log_factors).try_inverse().unwrap_or_else(SMatrix::zeros);
+            point.residual.dot(&(weight * point.residual))
         };
         self.points.iter().map(of_point).sum()
     }
@@ -103,39 +102,42 @@ impl Components {
 
     /// How the likelihood rises with the logarithms, and the information about them.
     ///
-    /// With V the covariance of all distances, B a component's part of it, P = V⁻¹ − V⁻¹ J H⁻¹ Jᵀ V⁻¹ and y the distances: the
-    /// score is ½ (yᵀ P B P y − tr(P B)), the information ½ tr(P B P B'). V and B are blocks of two, so sums over the points
+    /// With V the covariance of all residuals, B a component's part of it, P = V⁻¹ − V⁻¹ J H⁻¹ Jᵀ V⁻¹ and y the residuals: the
+    /// score is ½ (yᵀ P B P y − tr(P B)), the information ½ tr(P B P B'). V and B are small blocks, so sums over the points
     /// suffice.
     fn scoring(&self, log_factors: &Vector3<f64>) -> Result<(Vector3<f64>, Matrix3<f64>), SolveError> {
-        let mut hessian = SMatrix::<f64, NUM_UNKNOWNS, NUM_UNKNOWNS>::zeros();
-        let mut pull = SMatrix::<f64, NUM_UNKNOWNS, 1>::zeros();
-        let weights: Vec<Matrix2<f64>> = self
+        let mut hessian = SMatrix::<f64, U, U>::zeros();
+        let mut pull = SMatrix::<f64, U, 1>::zeros();
+        let weights: Vec<SMatrix<f64, R, R>> = self
             .points
             .iter()
             .map(|point| {
-                let weight = point.covariance(log_factors).try_inverse().unwrap_or_default();
-                let weighted = point.by_unknowns.transpose() * weight;
-                hessian += weighted * point.by_unknowns;
-                pull += weighted * point.off_edge;
+                let weight = point.covariance(log_factors).try_inverse().unwrap_or_else(SMatrix::zeros);
+                let weighted = product(&point.by_unknowns.transpose(), &weight);
+                hessian += product(&weighted, &point.by_unknowns);
+                pull += weighted * point.residual;
                 weight
             })
             .collect();
         let inverse = inverse_of(&hessian)?;
         let fitted = inverse * pull;
         let (mut score, mut information) = self.prior(log_factors);
-        let mut losses = [SMatrix::<f64, NUM_UNKNOWNS, NUM_UNKNOWNS>::zeros(); NUM_COMPONENTS];
+        let mut losses = [SMatrix::<f64, U, U>::zeros(); NUM_COMPONENTS];
         for (point, weight) in self.points.iter().zip(&weights) {
-            let left = weight * (point.off_edge - point.by_unknowns * fitted);
-            let by_unknowns = weight * point.by_unknowns;
-            let spread = by_unknowns * inverse * by_unknowns.transpose();
-            let parts: [Matrix2<f64>; NUM_COMPONENTS] =
+            let left = weight * (point.residual - point.by_unknowns * fitted);
+            let by_unknowns = product(weight, &point.by_unknowns);
+            let spread = product(&product(&by_unknowns, &inverse), &by_unknowns.transpose());
+            let parts: [SMatrix<f64, R, R>; NUM_COMPONENTS] =
                 std::array::from_fn(|idx| point.open[idx] * log_factors[idx].exp());
+            let weighted = parts.each_ref().map(|part| product(weight, part));
+            let spread_parts = parts.each_ref().map(|part| product(&spread, part));
             for (row, part) in parts.iter().enumerate() {
-                score[row] += 0.5 * (left.dot(&(part * left)) - (part * (weight - spread)).trace());
-                losses[row] += by_unknowns.transpose() * part * by_unknowns;
-                for (column, other) in parts.iter().enumerate() {
-                    let own = (weight * part * weight * other).trace();
-                    let shared = (part * weight * other * spread).trace();
+                score[row] += 0.5 * (left.dot(&(part * left)) - (weighted[row].trace() - spread_parts[row].trace()));
+                losses[row] += product(&by_unknowns.transpose(), &product(part, &by_unknowns));
+                for column in 0..NUM_COMPONENTS {
+                    // Traces of W B W B' and W B (V⁻¹ J H⁻¹ Jᵀ V⁻¹) B'.
+                    let own = trace_of_product(&weighted[row], &weighted[column]);
+                    let shared = trace_of_product(&weighted[column], &spread_parts[row]);
                     information[(row, column)] += 0.5 * own - shared;
                 }
             }
@@ -161,6 +163,27 @@ impl Components {
         let information = (Matrix3::from_diagonal(&is_open) - is_open * is_open.transpose() / is_open.sum()) * weight;
         (-information * log_factors, information)
     }
+}
+
+/// A product of small matrices: nalgebra packs those of more than five rows as if they were large ones.
+fn product<const R: usize, const K: usize, const C: usize>(
+    left: &SMatrix<f64, R, K>,
+    right: &SMatrix<f64, K, C>,
+) -> SMatrix<f64, R, C> {
+    let mut product = SMatrix::<f64, R, C>::zeros();
+    for column in 0..C {
+        for middle in 0..K {
+            let factor = right[(middle, column)];
+            for row in 0..R {
+                product[(row, column)] += left[(row, middle)] * factor;
+            }
+        }
+    }
+    product
+}
+
+fn trace_of_product<const R: usize>(left: &SMatrix<f64, R, R>, right: &SMatrix<f64, R, R>) -> f64 {
+    left.dot(&right.transpose())
 }
 
 /// The inverse over the components that have information; zero elsewhere.

@@ -1,0 +1,199 @@
+//! The time by which one stream of poses lags behind the other: found where the curves of their rotation speeds match.
+//!
+//! A hand and an eye that are rigidly joined turn at the same speed at any moment, whatever lies between them, so the speeds
+//! are compared before anything is known of the calibration.
+
+use nalgebra::UnitQuaternion;
+
+use crate::geometry::{Rigid, se3, stats};
+
+/// A pose with its time, s.
+pub type Timed = (f64, Rigid);
+
+/// Fewer speeds than this are no curve.
+const MIN_SAMPLES: usize = 8;
+/// Of the shorter stream at least this part must lie within the other one.
+const LEAST_OVERLAP: f64 = 0.5;
+/// Curves that correlate less do not match.
+const LEAST_CORRELATION: f64 = 0.5;
+/// Offsets tried; beyond that the step grows.
+const MAX_TRIALS: usize = 20_000;
+
+/// The pose of a stream at a time, between its neighbours along the twist that joins them; `None` outside of the stream or in a
+/// gap of more than `longest_gap_s`.
+#[must_use]
+pub fn at(stream: &[Timed], time_s: f64, longest_gap_s: f64) -> Option<Rigid> {
+    let after = stream.partition_point(|(time, _)| *time < time_s);
+    let (end_s, end) = stream.get(after)?;
+    if *end_s <= time_s {
+        return Some(*end);
+    }
+    let (start_s, start) = stream.get(after.checked_sub(1)?)?;
+    let gap_s = end_s - start_s;
+    if gap_s > longest_gap_s {
+        return None;
+    }
+    let twist = se3::log(&(start.inverse() * end));
+    Some(start * se3::exp(&(twist * ((time_s - start_s) / gap_s))))
+}
+
+/// A gap in a stream that is too long to interpolate over, s.
+#[must_use]
+pub fn longest_gap_s(stream: &[Timed]) -> f64 {
+    /// Where some samples are missing the motion between is still smooth.
+    const SAMPLES: f64 = 5.0;
+    SAMPLES * interval_s(stream)
+}
+
+/// The usual time between samples, s.
+pub(super) fn interval_s(stream: &[Timed]) -> f64 {
+    stats::median(&mut stream.windows(2).map(|pair| pair[1].0 - pair[0].0).collect::<Vec<_>>())
+}
+
+/// The offset to add to the times of `sensor` so that they become those of `flange`, s; `None` where the speeds show no match:
+/// hardly any rotation, one at constant speed, or too little overlap.
+#[must_use]
+pub fn coarse(flange: &[Timed], sensor: &[Timed]) -> Option<f64> {
+    let (of_flange, of_sensor) = (speeds(flange), speeds(sensor));
+    if of_flange.len() < MIN_SAMPLES || of_sensor.len() < MIN_SAMPLES {
+        return None;
+    }
+    let (first, last) =
+        (of_flange[0].0 - of_sensor[of_sensor.len() - 1].0, of_flange[of_flange.len() - 1].0 - of_sensor[0].0);
+    let step_s = (0.5 * interval_s(flange).min(interval_s(sensor))).max((last - first) / as_float(MAX_TRIALS));
+    if !(step_s > 0.0 && step_s.is_finite()) {
+        return None;
+    }
+    let score = |offset_s: f64| correlation(&of_flange, &of_sensor, offset_s);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most MAX_TRIALS, and not negative")]
+    let num_trials = ((last - first) / step_s) as usize;
+    let trials = (0..=num_trials).map(|idx| first + step_s * as_float(idx));
+    let (best_s, best) =
+        trials.filter_map(|offset| Some((offset, score(offset)?))).max_by(|a, b| a.1.total_cmp(&b.1))?;
+    if best < LEAST_CORRELATION {
+        return None;
+    }
+    // The top of a parabola through the neighbours.
+    let (Some(before), Some(after)) = (score(best_s - step_s), score(best_s + step_s)) else { return Some(best_s) };
+    let bend = before - 2.0 * best + after;
+    Some(if bend < 0.0 { best_s + 0.5 * step_s * (before - after) / bend } else { best_s })
+}
+
+/// Rotation speed (rad/s) in the middle of each pair of samples.
+fn speeds(stream: &[Timed]) -> Vec<(f64, f64)> {
+    let speed = |pair: &[Timed]| {
+        let [(start_s, start), (end_s, end)] = pair else { return None };
+        let rotation: UnitQuaternion<f64> = start.rotation.inverse() * end.rotation;
+        (end_s > start_s).then(|| (0.5 * (start_s + end_s), rotation.angle() / (end_s - start_s)))
+    };
+    stream.windows(2).filter_map(speed).collect()
+}
+
+/// Pearson's, over the samples of the sensor that lie within the flange's.
+fn correlation(flange: &[(f64, f64)], sensor: &[(f64, f64)], offset_s: f64) -> Option<f64> {
+    let (mut count, mut sum, mut sums, mut products) = (0.0, [0.0; 2], [0.0; 2], 0.0);
+    let mut place = 1;
+    for (time_s, of_sensor) in sensor {
+        let time_s = time_s + offset_s;
+        while place < flange.len() && flange[place].0 < time_s {
+            place += 1;
+        }
+        let (Some(before), Some(after)) = (flange.get(place - 1), flange.get(place)) else { break };
+        if time_s < before.0 {
+            continue;
+        }
+        let share = (time_s - before.0) / (after.0 - before.0);
+        let of_flange = before.1 + share * (after.1 - before.1);
+        count += 1.0;
+        sum = [sum[0] + of_flange, sum[1] + of_sensor];
+        sums = [sums[0] + of_flange * of_flange, sums[1] + of_sensor * of_sensor];
+        products += of_flange * of_sensor;
+    }
+    let shorter = as_float(flange.len().min(sensor.len()));
+    if count < LEAST_OVERLAP * shorter || count < as_float(MIN_SAMPLES) {
+        return None;
+    }
+    let variance = |idx: usize| sums[idx] / count - (sum[idx] / count) * (sum[idx] / count);
+    let covariance = products / count - sum[0] / count * (sum[1] / count);
+    let scale = (variance(0) * variance(1)).sqrt();
+    (scale > 0.0).then(|| covariance / scale)
+}
+
+#[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 samples")]
+fn as_float(count: usize) -> f64 {
+    count as f64
+}
+
+/// The minimum of a cost that is a parabola near it, and the standard deviation of its place where the cost is a sum of squares
+/// of unit variance; `None` if the cost has no minimum near the start.
+pub(super) fn refined(start_s: f64, step_s: f64, cost: impl Fn(f64) -> Option<f64>) -> Option<(f64, f64)> {
+    const MAX_STEPS: usize = 8;
+    let (mut place, mut step) = (start_s, step_s);
+    for _ in 0..MAX_STEPS {
+        let [before, here, after] = [place - step, place, place + step].map(&cost);
+        let (before, here, after) = (before?, here?, after?);
+        let bend = before - 2.0 * here + after;
+        if bend <= 0.0 {
+            return None;
+        }
+        let move_s = (0.5 * step * (before - after) / bend).clamp(-2.0 * step_s, 2.0 * step_s);
+        place += move_s;
+        let std_s = step * (2.0 / bend).sqrt();
+        if move_s.abs() < 0.05 * std_s || move_s.abs() < 1e-3 * step_s {
+            return Some((place, std_s));
+        }
+        // Differences over about the width that the cost itself has.
+        step = std_s.clamp(0.05 * step_s, step_s);
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Vec3, so3};
+
+    fn turning(time_s: f64) -> Rigid {
+        let angle = 0.4 * (2.1 * time_s).sin() + 0.25 * (3.7 * time_s + 0.4).cos();
+        Rigid::from_parts(Vec3::new(100.0 * time_s, 5.0, -3.0).into(), so3::exp(Vec3::new(0.6, -0.8, 0.0) * angle))
+    }
+
+    #[test]
+    fn a_known_lag_is_found() {
+        for lag_s in [-0.73, 0.0, 0.021, 1.4] {
+            let flange: Vec<Timed> =
+                (0..1000).map(|idx| (f64::from(idx) * 0.008, turning(f64::from(idx) * 0.008))).collect();
+            let sensor: Vec<Timed> = (0..150)
+                .map(|idx| (f64::from(idx) * 0.033 + 1.5 - lag_s, turning(f64::from(idx) * 0.033 + 1.5).inverse()))
+                .collect();
+            let found = coarse(&flange, &sensor).expect("matching curves");
+            // A quarter of the coarser stream's interval.
+            assert!((found - lag_s).abs() < 0.008, "{found} for {lag_s}");
+        }
+    }
+
+    #[test]
+    fn constant_speed_matches_nowhere() {
+        let steady: Vec<Timed> = (0..100)
+            .map(|idx| {
+                (
+                    f64::from(idx) * 0.1,
+                    Rigid::from_parts(Vec3::zeros().into(), so3::exp(Vec3::z() * (0.02 * f64::from(idx)))),
+                )
+            })
+            .collect();
+        assert!(coarse(&steady, &steady).is_none_or(|found| found.abs() < 10.0));
+    }
+
+    #[test]
+    fn between_two_samples_the_pose_lies_on_their_twist() {
+        let stream: Vec<Timed> = vec![(0.0, turning(0.0)), (0.2, turning(0.2)), (9.0, turning(9.0))];
+        let middle = at(&stream, 0.1, 1.0).expect("within");
+        let halves = [(turning(0.0).inverse() * middle), (middle.inverse() * turning(0.2))].map(|half| se3::log(&half));
+        assert!((halves[0] - halves[1]).norm() < 1e-9, "{halves:?}");
+        assert_eq!(at(&stream, 0.2, 1.0), Some(turning(0.2)));
+        assert_eq!(at(&stream, 5.0, 1.0), None, "a gap");
+        assert_eq!(at(&stream, -0.1, 1.0), None);
+        assert_eq!(at(&stream, 9.1, 1.0), None);
+    }
+}
