@@ -29,7 +29,7 @@ pub enum NothingToSolve {
     #[error("the session's target is a workpiece: it shows what a calibration is worth, but none is computed from it")]
     Workpiece,
     /// Another command's.
-    #[error("the session's target is an RGB-D sequence, from which this version computes no calibration")]
+    #[error("the session's target is an RGB-D sequence: `handeye odometry`, or the window, finds its motion, and from that the calibration")]
     Rgbd,
 }
 
