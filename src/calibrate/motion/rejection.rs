@@ -89,8 +89,9 @@ pub(super) fn fault_of(
     typical_square: impl Fn(&PosePair) -> f64,
 ) -> (PoseFault, f64, f64) {
     let errors = state.errors(pose);
-    let fits =
-        |sensor_from_target: Rigid| typical_square(&PosePair { sensor_from_target, ..*pose }) < 4.0 * NEVER_BELOW;
+    let square = |sensor_from_target: Rigid| typical_square(&PosePair { sensor_from_target, ..*pose });
+    // Another reading of a marker is not quite its true pose.
+    let fits = |sensor_from_target: Rigid| square(sensor_from_target) < 4.0 * NEVER_BELOW;
     let seen = pose.sensor_from_target;
     let half_turns = [Vec3::x(), Vec3::y(), Vec3::z()].map(|axis| exp(axis * std::f64::consts::PI));
     let is_flipped = half_turns.iter().any(|turn| {
@@ -99,14 +100,14 @@ pub(super) fn fault_of(
     });
     let is_mirrored = || fits(mirrored_tilt(&seen));
     let expected = state.flange_from_sensor.inverse() * pose.base_from_flange.inverse() * state.base_from_target;
+    let turned = square(Rigid::from_parts(seen.translation, expected.rotation));
+    let shifted = square(Rigid::from_parts(expected.translation, seen.rotation));
     let fault = if fits(seen.inverse()) {
         PoseFault::Inverted
     } else if is_flipped || is_mirrored() {
         PoseFault::Flipped
-    } else if fits(Rigid::from_parts(seen.translation, expected.rotation)) {
-        PoseFault::Orientation
-    } else if fits(Rigid::from_parts(expected.translation, seen.rotation)) {
-        PoseFault::Place
+    } else if turned.min(shifted) < NEVER_BELOW {
+        if turned < shifted { PoseFault::Orientation } else { PoseFault::Place }
     } else {
         PoseFault::Both
     };
