@@ -29,7 +29,9 @@ pub enum NothingToSolve {
     #[error("the session's target is a workpiece: it shows what a calibration is worth, but none is computed from it")]
     Workpiece,
     /// Another command's.
-    #[error("the session's target is an RGB-D sequence: `handeye odometry`, or the window, finds its motion, and from that the calibration")]
+    #[error(
+        "the session's target is an RGB-D sequence: `handeye odometry`, or the window, finds its motion, and from that the calibration"
+    )]
     Rgbd,
 }
 
