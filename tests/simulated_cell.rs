@@ -132,13 +132,37 @@ fn settings_are_told_as_they_are_and_not_taken() {
     }
 }
 
+const START_STREAM: &str = "18000000 0100f000 00000000 0c000000 a0000000 47000000 01000000";
+const STOP_STREAM: &str = "10000000 0100f000 00000000 04000000 48000000";
+const STREAM_STOPPED: &str = "ffffffff 01000000";
+
+/// A client of the high-speed port for which a stream was started and stopped. A stream is served to who was there when it
+/// was started: until bytes come nobody knows that the server has seen him.
+fn served_stream(stream_port: u16, client: &mut TcpStream) -> TcpStream {
+    let mut stream = connect(stream_port);
+    stream.set_nonblocking(true).expect("set");
+    let mut is_served = false;
+    while !is_served {
+        ask_until(client, &hex(START_STREAM), |bytes| bytes.len() >= 28);
+        sleep(Duration::from_millis(20));
+        is_served = stream.read(&mut [0; 64]).is_ok();
+    }
+    stream.set_nonblocking(false).expect("set");
+    ask_until(client, &hex(STOP_STREAM), |bytes| bytes.len() >= 28);
+    // Streams that another start has ended leave their notes as well: nothing follows the last one.
+    stream.set_read_timeout(Some(Duration::from_millis(500))).expect("a timeout");
+    while stream.read(&mut [0; 4096]).is_ok_and(|num| num > 0) {}
+    stream.set_read_timeout(Some(PATIENCE)).expect("a timeout");
+    stream
+}
+
 #[test]
 fn the_high_speed_port_pushes_one_profile_after_the_other() {
     const PROFILE: usize = 2028;
     let cell = SimCell::start(&unhurried()).expect("free ports");
     let port_of = |what: &str| cell.ports.iter().find(|(_, found)| found.contains(what)).expect("served").0;
-    let mut stream = connect(port_of("high-speed"));
     let mut client = connect(cell.sensor_setup.endpoint.port);
+    let mut stream = served_stream(port_of("high-speed"), &mut client);
     let reply = ask_until(&mut client, &hex("14000000 0100f000 00000000 08000000 47000000 02000000"), |bytes| {
         bytes.len() >= 56
     });
@@ -155,10 +179,9 @@ fn the_high_speed_port_pushes_one_profile_after_the_other() {
         assert_eq!(word(start + PROFILE - 4), sum);
         assert_eq!(word(start + 4), word(4) + u32::try_from(start / PROFILE).expect("few"));
     }
-    let stop = hex("10000000 0100f000 00000000 04000000 48000000");
-    assert_eq!(ask_until(&mut client, &stop, |bytes| bytes.len() >= 28)[17], 0);
+    assert_eq!(ask_until(&mut client, &hex(STOP_STREAM), |bytes| bytes.len() >= 28)[17], 0);
     // Whole profiles until then, and the note of the stop behind them.
-    let note = hex("ffffffff 01000000");
+    let note = hex(STREAM_STOPPED);
     let rest = ask_until(&mut stream, b"", |bytes| bytes.ends_with(&note));
     assert_eq!((profiles.len() + rest.len() - note.len()) % PROFILE, 0);
 }
@@ -168,19 +191,9 @@ fn a_stream_is_its_clients_own_and_ends_with_it() {
     let cell = SimCell::start(&quick()).expect("free ports");
     let stream_port = cell.ports.iter().find(|(_, what)| what.contains("high-speed")).expect("served").0;
     let mut client = connect(cell.sensor_setup.endpoint.port);
-    let start = hex("18000000 0100f000 00000000 0c000000 a0000000 47000000 01000000");
-    let stop = hex("10000000 0100f000 00000000 04000000 48000000");
-    let note = hex("ffffffff 01000000");
-    let mut first = connect(stream_port);
-    // A stream is served to who was there when it was started: until bytes come nobody knows that the server has seen him.
-    let mut is_served = false;
-    first.set_nonblocking(true).expect("set");
-    while !is_served {
-        ask_until(&mut client, &start, |bytes| bytes.len() >= 28);
-        sleep(Duration::from_millis(20));
-        is_served = first.read(&mut [0; 64]).is_ok();
-    }
-    first.set_nonblocking(false).expect("set");
+    let [start, stop, note] = [START_STREAM, STOP_STREAM, STREAM_STOPPED].map(hex);
+    let mut first = served_stream(stream_port, &mut client);
+    ask_until(&mut client, &start, |bytes| bytes.len() >= 28);
     // Stopped and started at once: the note of the stop stands between the two.
     ask_until(&mut client, &stop, |bytes| bytes.len() >= 28);
     ask_until(&mut client, &start, |bytes| bytes.len() >= 28);

@@ -205,7 +205,7 @@ pub const MOVES_HINT: &str = "How far the workspace point moves when the station
 /// Axis title.
 pub const STUDENTISED_AXIS: &str = "residual / its σ";
 /// Axis title.
-pub const MOVES_AXIS: &str = "moves the point / mm";
+pub const MOVES_AXIS: &str = "moves / mm";
 
 /// Readout of a station's influence.
 #[must_use]

@@ -149,6 +149,8 @@ pub const HARDLY_CHANCE: &str = "hardly chance";
 pub const MOVES: &str = "How far the workspace point moves without the station";
 /// Caption of the influence of stations.
 pub const INFLUENCE_TITLE: &str = "What each station means for the result: left out, against its noise, and its pull";
+/// Axis of residuals where there is little room: the title of the figure names them.
+pub const SMALL_RESIDUAL_AXIS: &str = "res. / µm";
 /// Legend of residuals.
 pub const RESIDUALS: &str = "residuals";
 /// Legend of the line that normal residuals lie on.

@@ -156,7 +156,7 @@ mod tests {
     #[test]
     fn every_role_can_be_chosen_and_a_quaternion_has_four_numbers() {
         let mut notation = PoseNotation::default();
-        assert_eq!(role_choices(&notation).len(), 17);
+        assert_eq!(role_choices(&notation).len(), 23);
         notation.orientation = crate::geometry::notation::OrientationForm::QuaternionWxyz;
         assert!(role_choices(&notation).contains(&Role::Orientation(3)));
     }

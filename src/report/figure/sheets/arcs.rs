@@ -99,7 +99,7 @@ fn profiles(seen: &[Seen]) -> Vec<Figure> {
             upper.heading = Some(shown.heading());
             upper.x = Axis::default();
             shared::Z_AXIS_SHORT.clone_into(&mut upper.y.title);
-            Small { upper, lower: Some(residual_plot(&shown.model)) }
+            Small { upper, lower: Some(residual_plot(&shown.model, words::SMALL_RESIDUAL_AXIS)) }
         };
         let multiples =
             Multiples { height: 132.0, upper_part: 0.64, legend: shared_legend(seen), x_title: shared::X_AXIS };
@@ -112,7 +112,7 @@ fn one_profile(shown: &Seen) -> Figure {
     let mut sheet = Sheet::new(HALF_PAGE);
     let mut upper = profile_plot(&shown.model, true);
     upper.legend = legend(&shown.model);
-    let mut lower = residual_plot(&shown.model);
+    let mut lower = residual_plot(&shown.model, shared::RESIDUAL_AXIS);
     upper.x = Axis { is_labelled: false, ..Axis::new("") };
     let area = sheet.area();
     sheet.stack_following(PROFILE_PART, &upper, &mut lower, &area);
@@ -245,8 +245,8 @@ fn cross(plot: &mut Plot, at: [f64; 2], color: Rgb) {
 }
 
 /// Distances of the inliers from what was found.
-fn residual_plot(model: &ProfileModel) -> Plot {
-    let mut plot = Plot::new(Axis::new(shared::X_AXIS), Axis::new(shared::RESIDUAL_AXIS), residual_extent(model));
+fn residual_plot(model: &ProfileModel, title: &'static str) -> Plot {
+    let mut plot = Plot::new(Axis::new(shared::X_AXIS), Axis::new(title), residual_extent(model));
     plot.level(0.0, Stroke::new(0.6, palette::TEXT_DIM), Dash::Solid);
     let points = inliers(model).map(|point| [point.x_mm, point.residual_um]).collect();
     plot.mark(Mark::Dots { points, radius: 0.8, color: palette::INLIER, is_hollow: false });
