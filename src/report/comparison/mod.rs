@@ -11,7 +11,7 @@ use crate::session::{Capture, Session, Station, Target};
 use crate::text::edges::edge_name;
 
 /// The methods from left to right: the paper's first, then the answer to use; the published stop by choice.
-pub const COLUMN_ORDER: [Method; 7] = [
+pub const COLUMN_ORDER: [Method; 8] = [
     Method::BallFixedPoint,
     Method::BallMaxArc,
     Method::BallBundle,
@@ -19,6 +19,7 @@ pub const COLUMN_ORDER: [Method; 7] = [
     Method::PlateOrthogonal,
     Method::PlateBundle,
     Method::FixedPoint,
+    Method::Motion,
 ];
 
 /// What errors are relative to.

@@ -2,6 +2,7 @@
 
 mod bars;
 mod cards;
+mod closed_forms;
 mod differences;
 mod panel;
 mod paper;

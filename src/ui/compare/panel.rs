@@ -5,7 +5,7 @@ use std::rc::Rc;
 use egui::{Align, Button, Layout, ScrollArea, Ui, UiBuilder, vec2};
 
 use crate::app::{Document, Results};
-use crate::calibrate::Method;
+use crate::calibrate::{Method, solution_of};
 use crate::report::comparison::{COLUMN_ORDER, Column, Comparison, ErrorReference, MethodTable};
 use crate::report::judgement::Judgement;
 use crate::session::Target;
@@ -19,7 +19,7 @@ use crate::ui::{PanelContext, rail, theme, widgets};
 use super::bars::{self, BarSource};
 use super::cards::{self, CardOptions};
 use super::scatter::{self, ScatterView};
-use super::{differences, published, table};
+use super::{closed_forms, differences, published, table};
 
 /// A card narrower than this clips its numbers, points.
 const MIN_CARD_WIDTH: f32 = 440.0;
@@ -119,6 +119,13 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut CompareStat
         verdict::show(ui, band.as_ref(), improvement, next.as_ref(), is_out_of_date, is_explained, context);
         if rail::is_sequence(workbench) {
             ui.label(theme::dim(ui, sequence_words::NO_TABLES));
+        }
+        if let Some(motion) =
+            solution_of(&results.methods, Method::Motion).and_then(|solution| solution.motion.as_ref())
+        {
+            closed_forms::show(ui, &motion.closed_forms);
+        }
+        if rail::is_sequence(workbench) {
             return;
         }
         let width = ui.available_width();
