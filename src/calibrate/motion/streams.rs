@@ -1,7 +1,7 @@
 //! Two streams of poses with times: of the flange, and of a camera that tracks its own motion or sees a target.
 //!
 //! Data flows streams → their time offset, from the rotation speeds ([`super::time_offset`]) → the flange at the camera's times
-//! → closed forms → least squares over the steps ([`super::steps`]), or over the poses as of a target → the offset refined along
+//! → closed forms → least squares over the steps (`steps`), or over the poses as of a target → the offset refined along
 //! with it → [`Solution`].
 
 use nalgebra::{Matrix6, Vector6};
