@@ -83,6 +83,7 @@ enum News {
 #[derive(Debug, Default)]
 pub struct SequenceBench {
     options: TrackOptions,
+    run: u64,
     sequence: Option<Arc<Sequence>>,
     seen: Vec<SeenFrame>,
     tracked: Option<Arc<Tracked>>,
@@ -101,6 +102,12 @@ impl SequenceBench {
     #[must_use]
     pub const fn options(&self) -> TrackOptions {
         self.options
+    }
+
+    /// Another number, another run through a sequence.
+    #[must_use]
+    pub const fn run(&self) -> u64 {
+        self.run
     }
 
     /// The sequence, once its lists are read.
@@ -137,6 +144,11 @@ impl SequenceBench {
     pub(super) const fn is_busy(&self) -> bool {
         self.looking.is_running()
     }
+
+    /// Nothing seen yet, in another run that is tracked in the same way.
+    fn begun_anew(&self, news: Option<Receiver<News>>) -> Self {
+        Self { options: self.options, run: self.run + 1, news, ..Self::default() }
+    }
 }
 
 impl Workbench {
@@ -161,7 +173,7 @@ impl Workbench {
 
     /// How the next one is tracked stays as it was chosen.
     pub(super) fn forget_sequence(&mut self) {
-        self.sequence = SequenceBench { options: self.sequence.options, ..SequenceBench::default() };
+        self.sequence = self.sequence.begun_anew(None);
     }
 
     fn look_at_wanted(&mut self) {
@@ -192,8 +204,7 @@ impl Workbench {
         match &known {
             Some(_) => self.sequence.news = None,
             None => {
-                self.sequence =
-                    SequenceBench { options: self.sequence.options, news: Some(news), ..SequenceBench::default() };
+                self.sequence = self.sequence.begun_anew(Some(news));
             }
         }
         self.sequence.tracked.clone_from(&known);

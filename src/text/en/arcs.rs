@@ -171,10 +171,26 @@ pub fn points_of_edge(edge: &str, count: usize) -> String {
     format!("edge {edge} {count}")
 }
 
-/// Legend of tips.
+/// Legend of tips, or of boards.
 #[must_use]
-pub fn tips(count: usize) -> String {
-    format!("tip {count}")
+pub fn tips(target: &Target, count: usize) -> String {
+    if matches!(target, Target::Pose { .. }) { format!("target's origin {count}") } else { format!("tip {count}") }
+}
+
+/// Title of the card with the points of all stations.
+#[must_use]
+pub const fn all_points(target: &Target) -> &'static str {
+    if matches!(target, Target::Pose { .. }) { "All targets as seen from above" } else { IN_LASER_PLANE }
+}
+
+/// Why their spread matters.
+#[must_use]
+pub const fn spread_hint_long(target: &Target) -> &'static str {
+    if matches!(target, Target::Pose { .. }) {
+        "Where the target was in the sensor's x and z: seen in one place only, the calibration is unsure elsewhere"
+    } else {
+        SPREAD_HINT_LONG
+    }
 }
 
 /// Readout of a point in the laser plane.

@@ -29,13 +29,13 @@ pub fn card(
 ) {
     let points = model::spread(rows);
     let right = |ui: &mut Ui| {
-        ui.label(theme::dim(ui, text::SPREAD_HINT)).on_hover_text(text::SPREAD_HINT_LONG);
+        ui.label(theme::dim(ui, text::SPREAD_HINT)).on_hover_text(text::spread_hint_long(target));
     };
-    widgets::card_with_height(ui, text::IN_LASER_PLANE, height, right, |ui| {
+    widgets::card_with_height(ui, text::all_points(target), height, right, |ui| {
         if points.is_empty() {
             empty_card(ui, text::NO_POINTS, None);
         } else {
-            saveable(ui, text::IN_LASER_PLANE, |ui| plot(ui, target, &points, selection, is_fitted));
+            saveable(ui, text::all_points(target), |ui| plot(ui, target, &points, selection, is_fitted));
         }
     });
 }
@@ -80,7 +80,7 @@ fn entries(target: &Target, points: &[SpreadPoint]) -> Vec<LegendEntry> {
     let entry = |edge: &Option<Edge>| {
         let count = points.iter().filter(|point| point.edge == *edge).count();
         let (shape, color) = look(*edge);
-        let text = edge.map_or_else(|| text::tips(count), |edge| text::points_of_edge(edge_name(edge), count));
+        let text = edge.map_or_else(|| text::tips(target, count), |edge| text::points_of_edge(edge_name(edge), count));
         LegendEntry { glyph: LegendGlyph::Solid(shape), color, text }
     };
     kinds.iter().map(entry).collect()

@@ -1,5 +1,6 @@
 //! The sequence of an RGB-D session: pictures, what the motion was found from, the way, and curves over time.
 
+mod controls;
 mod model;
 mod over_time;
 mod panel;

@@ -14,8 +14,8 @@ pub(super) type Values = Vec<(f64, Option<f64>)>;
 /// The frames so far as curves and ways.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Model {
-    /// Frames that this was made of.
-    pub num_frames: usize,
+    /// The run and the number of its frames that this was made of.
+    made_of: (u64, usize),
     /// Times from the first frame on, s.
     pub times_s: Vec<f64>,
     /// Length of the way, m.
@@ -47,13 +47,18 @@ impl Model {
     pub fn of(sequence: &Sequence, bench: &SequenceBench) -> Self {
         let seen = bench.seen();
         let first_s = sequence.frames.first().map_or(0.0, |frame| frame.time_s);
-        let mut model = Self { num_frames: seen.len(), ..Self::default() };
+        let mut model = Self { made_of: (bench.run(), seen.len()), ..Self::default() };
         for (idx, frame) in seen.iter().enumerate() {
             model.take(idx, frame, frame.record.time_s - first_s);
         }
         model.lost_s = lost(&model.times_s, seen);
         model.take_truth(sequence, first_s);
         model
+    }
+
+    /// Whether it is of all the frames so far.
+    pub fn is_of(&self, bench: &SequenceBench) -> bool {
+        self.made_of == (bench.run(), bench.seen().len())
     }
 
     fn take(&mut self, idx: usize, frame: &SeenFrame, time_s: f64) {

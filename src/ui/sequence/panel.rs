@@ -3,36 +3,29 @@
 use std::rc::Rc;
 use std::sync::Arc;
 
-use egui::{Align, ColorImage, ComboBox, DragValue, Label, Layout, Rect, Role, Ui, UiBuilder, WidgetInfo, vec2};
+use egui::{ColorImage, Rect, Ui, UiBuilder, vec2};
 
-use crate::app::workbench::sequence::{FramePictures, SequenceBench, SequenceCommand, TrackOptions, Tracked};
-use crate::app::{Command, Workbench};
-use crate::odometry::{DepthImage, Estimator};
-use crate::report::odometry_file::frames_csv;
-use crate::session::sequence::{Sequence, trajectory, trajectory_text};
-use crate::text::odometry::{failure_message, tracking_word};
+use crate::app::Command;
+use crate::app::workbench::sequence::{FramePictures, SequenceBench, SequenceCommand, TrackOptions};
+use crate::odometry::{DepthImage, Match};
+use crate::session::sequence::Sequence;
 use crate::text::sequence as words;
-use crate::ui::file_dialog::Purpose;
-use crate::ui::save_file::{self, SaveFile};
 use crate::ui::save_picture::saveable;
 use crate::ui::{PanelContext, theme, widgets};
 
+use super::controls;
 use super::model::{Model, Values};
 use super::over_time::{Curve, OverTime};
 use super::picture::{Distances, Picture, Pixel, Scene, Shown, Way, distances_image};
 use super::player::Player;
 use super::trajectory::{self as way, Eye};
 
-/// Height of the player's card, points: three rows.
-const PLAYER_HEIGHT: f32 = 100.0;
 /// The part of what is left that picture and way take.
 const UPPER_PART: f32 = 0.56;
 /// Below this width the cards stand above each other.
 const SIDE_BY_SIDE_FROM: f32 = 640.0;
 /// Height of each card when they stand above each other.
 const STACKED_HEIGHT: f32 = 360.0;
-/// Periods that make sense, s.
-const PERIODS_S: std::ops::RangeInclusive<f64> = 0.0..=60.0;
 
 /// How the way is shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -47,6 +40,8 @@ enum WayView {
 pub struct SequenceState {
     /// The document that it belongs to.
     document_id: Option<u64>,
+    /// The run that the player goes through.
+    run: u64,
     player: Player,
     shown: Shown,
     way_view: WayView,
@@ -68,6 +63,7 @@ impl Default for SequenceState {
     fn default() -> Self {
         Self {
             document_id: None,
+            run: 0,
             player: Player::following(),
             shown: Shown::default(),
             way_view: WayView::default(),
@@ -86,7 +82,7 @@ impl Default for SequenceState {
 impl SequenceState {
     fn model(&mut self, sequence: &Sequence, bench: &SequenceBench) -> Rc<Model> {
         match &self.model {
-            Some(model) if model.num_frames == bench.seen().len() => Rc::clone(model),
+            Some(model) if model.is_of(bench) => Rc::clone(model),
             _ => {
                 let model = Rc::new(Model::of(sequence, bench));
                 self.model = Some(Rc::clone(&model));
@@ -131,8 +127,9 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut SequenceSta
         widgets::nothing(ui, if is_under_way { words::OPENING } else { refusal.unwrap_or(words::OPENING) });
         return;
     };
-    if bench.seen().is_empty() {
+    if state.run != bench.run() {
         // Tracked anew: what is shown is the newest again.
+        state.run = bench.run();
         state.player = Player::following();
     }
     let model = state.model(sequence, bench);
@@ -144,9 +141,9 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut SequenceSta
         context.commands.push(Command::Sequence(SequenceCommand::Look(frame_idx)));
     }
     let area = ui.available_rect_before_wrap();
-    let (top, rest) = area.split_top_bottom_at_y(area.top() + PLAYER_HEIGHT);
+    let (top, rest) = area.split_top_bottom_at_y(area.top() + controls::HEIGHT);
     let mut top = ui.new_child(UiBuilder::new().max_rect(top));
-    player_card(&mut top, context, sequence, &model, state);
+    controls::card(&mut top, context, sequence, &model.times_s, &mut state.player, &mut state.options);
     let rest = rest.with_min_y(rest.top() + theme::GAP);
     let mut rest_ui = ui.new_child(UiBuilder::new().max_rect(rest));
     rest_ui.spacing_mut().item_spacing = vec2(theme::GAP, theme::GAP);
@@ -190,149 +187,6 @@ fn cards(
     effort_card(&mut child(ui, rect), rect.height(), model, state);
 }
 
-/// Buttons, slider and what is known of the frame; how the sequence is tracked and what came of it.
-fn player_card(
-    ui: &mut Ui,
-    context: &mut PanelContext<'_>,
-    sequence: &Sequence,
-    model: &Model,
-    state: &mut SequenceState,
-) {
-    const OPTIONS_WIDTH: f32 = 330.0;
-    widgets::card_with_height(
-        ui,
-        "",
-        PLAYER_HEIGHT,
-        |_| {},
-        |ui| {
-            egui::Frame::new().inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
-                ui.spacing_mut().item_spacing = vec2(6.0, 4.0);
-                ui.horizontal(|ui| {
-                    ui.set_min_height(28.0);
-                    let width = (ui.available_width() - OPTIONS_WIDTH).max(160.0);
-                    state.player.show(ui, &model.times_s, width);
-                    ui.with_layout(Layout::right_to_left(Align::Center), |ui| options(ui, context, state));
-                });
-                let sentence = frame_sentence(context.workbench.sequence(), sequence, model, state.player.frame_idx);
-                ui.add(Label::new(&sentence).truncate());
-                ui.horizontal(|ui| summary(ui, context.workbench, sequence));
-            });
-        },
-    );
-}
-
-/// How the sequence is tracked, and the button for what waits to be done; from right to left.
-fn options(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut SequenceState) {
-    let workbench = context.workbench;
-    let known = workbench.sequence().options();
-    let mut options = state.options.unwrap_or(known);
-    if workbench.solve_progress().is_some() {
-        if ui.button(words::STOP).clicked() {
-            context.commands.push(Command::CancelSolve);
-        }
-    } else {
-        let is_done = workbench.sequence().tracked().is_some() && options == known;
-        let again = ui.add_enabled(!is_done, egui::Button::new(words::TRACK));
-        if again.on_disabled_hover_text(words::TRACKED_ALREADY).clicked() {
-            context.commands.push(Command::Sequence(SequenceCommand::Track(options)));
-            state.options = None;
-            return;
-        }
-    }
-    let mut period_s = options.period_s.unwrap_or(0.0);
-    let field = ui.add(DragValue::new(&mut period_s).range(PERIODS_S).speed(0.01).max_decimals(3).custom_formatter(
-        |value, _| {
-            if value > 0.0 { words::seconds(&widgets::fixed(value, 2)) } else { words::EVERY_FRAME.to_owned() }
-        },
-    ));
-    field.widget_info(|| WidgetInfo::drag_value(true, period_s));
-    let field = field.on_hover_text(words::PERIOD_HINT);
-    options.period_s = Some(period_s).filter(|period_s| *period_s > 0.0);
-    let label = ui.label(theme::dim(ui, words::PERIOD));
-    field.labelled_by(label.id);
-    let combo =
-        ComboBox::from_id_salt("estimator").selected_text(words::estimator(options.estimator)).show_ui(ui, |ui| {
-            for estimator in [Estimator::Ours, Estimator::Published] {
-                ui.selectable_value(&mut options.estimator, estimator, words::estimator(estimator))
-                    .on_hover_text(words::estimator_hint(estimator));
-            }
-        });
-    combo.response.widget_info(|| {
-        let mut info = WidgetInfo::labeled(Role::ComboBox, true, words::ESTIMATOR);
-        info.current_text_value = Some(words::estimator(options.estimator).to_owned());
-        info
-    });
-    state.options = Some(options).filter(|options| *options != known);
-}
-
-/// What is known of the frame in sight.
-fn frame_sentence(bench: &SequenceBench, sequence: &Sequence, model: &Model, frame_idx: usize) -> String {
-    let Some(frame) = bench.seen().get(frame_idx) else { return words::OPENING.to_owned() };
-    let time_s = model.times_s.get(frame_idx).copied().unwrap_or(0.0);
-    let head = words::frame_head(frame_idx + 1, sequence.frames.len(), &widgets::fixed(time_s, 3));
-    let found = match &frame.record.outcome {
-        Err(error) => error.to_string(),
-        Ok(summary) => match &summary.tracking {
-            crate::odometry::Tracking::Lost(failure) => failure_message(failure),
-            crate::odometry::Tracking::Tracked(motion) => words::tracked(
-                tracking_word(&summary.tracking),
-                motion.num_inliers,
-                motion.num_matches,
-                &widgets::fixed(frame.record.motion_ms, 1),
-            ),
-            other => tracking_word(other).to_owned(),
-        },
-    };
-    format!("{head} · {found}")
-}
-
-/// What came of the sequence, and its files.
-fn summary(ui: &mut Ui, workbench: &Workbench, sequence: &Sequence) {
-    let bench = workbench.sequence();
-    let Some(tracked) = bench.tracked() else {
-        if let Some(progress) = workbench.solve_progress() {
-            ui.label(theme::dim(ui, words::progress(progress.done, progress.total)));
-        }
-        return;
-    };
-    let travel = tracked.records.iter().rev().find_map(|record| record.outcome.as_ref().ok()).map(|last| last.travel);
-    let with_pose = trajectory(&tracked.records).len();
-    let text = words::summary(
-        with_pose,
-        tracked.records.len(),
-        travel.map(|travel| [travel.distance_mm / 1000.0, travel.turn_rad.to_degrees()]),
-        tracked.evaluation.map(|found| [found.ate_rmse_mm, found.rpe_translation_rmse_mm]),
-    );
-    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-        files(ui, tracked);
-        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-            let words = theme::dim(ui, text);
-            let response = ui.add(Label::new(words).truncate());
-            if !sequence.notes.is_empty() {
-                let notes: Vec<String> = sequence.notes.iter().map(ToString::to_string).collect();
-                response.on_hover_text(notes.join("\n"));
-            }
-        });
-    });
-}
-
-/// The files that can be had of it.
-fn files(ui: &mut Ui, tracked: &Tracked) {
-    ui.menu_button(words::SAVE, |ui| {
-        let save = |ui: &mut Ui, label: &str, name: &str, contents: &dyn Fn() -> String| {
-            if ui.button(label).clicked() {
-                let contents = contents().into_bytes().into();
-                save_file::ask(ui.ctx(), SaveFile { purpose: Purpose::SequenceFile, name: name.to_owned(), contents });
-                ui.close();
-            }
-        };
-        save(ui, words::SAVE_TRAJECTORY, "trajectory.txt", &|| {
-            trajectory_text(trajectory(&tracked.records).iter().map(|pose| (pose.time_s, pose.world_from_sensor)))
-        });
-        save(ui, words::SAVE_FRAMES, "frames.csv", &|| frames_csv(&tracked.records));
-    });
-}
-
 fn picture_card(ui: &mut Ui, height: f32, sequence: &Sequence, bench: &SequenceBench, state: &mut SequenceState) {
     let mut shown = state.shown;
     let tabs = |ui: &mut Ui| {
@@ -359,8 +213,7 @@ fn picture_card(ui: &mut Ui, height: f32, sequence: &Sequence, bench: &SequenceB
         let seen = bench.seen().get(pictures.frame_idx);
         let features: &[Pixel] = seen.map_or(&[], |seen| &seen.features);
         let ways: Vec<Way> = seen.map_or_else(Vec::new, |seen| {
-            let way =
-                |found: &crate::odometry::Match| Way { from: found.before, to: found.now, is_inlier: found.is_inlier };
+            let way = |found: &Match| Way { from: found.before, to: found.now, is_inlier: found.is_inlier };
             seen.matches.iter().map(way).collect()
         });
         let of = state.shown;
