@@ -180,6 +180,7 @@ fn every_sample_has_the_figures_that_its_data_allow() {
             "lin-mu-2019-table-1.json" | "lin-mu-2019-table-2.json" => {
                 has(&["setup", "errors", "scatter", "stability"]);
             }
+            "poses.json" => has(&["setup", "trajectory", "errors", "scatter", "influence", "halves", "stability"]),
             "near-largest-arc.json" => has(&["profile", "profiles-1", "errors", "halves"]),
             _ => has(&[
                 "setup",
