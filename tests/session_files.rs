@@ -144,7 +144,7 @@ const BROKEN: &[(&str, &str, &[&str])] = &[
     ("\"z_mm\": [0.25, null]", "\"z_mm\": 0.25", &["stations[0].captures[0].profile.z_mm: found 0.25, expected a list of numbers"]),
     ("\"x_mm\": [-1, 0.5]", "\"x_mm\": [-1, null]", &["stations[0].captures[0].profile.x_mm[1]: found null"]),
     (", \"z_mm\": [0.25, null]", "", &["stations[0].captures[0].profile.z_mm: found nothing"]),
-    ("\"step\": -0.5, \"point_mm\"", "\"step\": -0.5, \"profile\": { \"x_mm\": [], \"z_mm\": [] }, \"point_mm\"", &["stations[0].captures[1]: found both profile and point_mm, expected either"]),
+    ("\"step\": -0.5, \"point_mm\"", "\"step\": -0.5, \"profile\": { \"x_mm\": [], \"z_mm\": [] }, \"point_mm\"", &["stations[0].captures[1]: found both profile and point_mm, expected one of profile, point_mm and sensor_from_target"]),
     ("\"step\": -0.5, \"point_mm\": [4, 5, 6]", "\"step\": -0.5", &["stations[0].captures[1]: found neither profile nor point_mm"]),
     ("\"step\": -0.5", "\"step\": [0.5]", &["stations[0].captures[1].step: found a list of 1, expected a move in mm"]),
     ("\"point_mm\": [4, 5, 6]", "\"point_mm\": [4, 5, {}]", &["stations[0].captures[1].point_mm[2]: found an object"]),
