@@ -188,10 +188,16 @@ fn a_run_on_a_pin_searches_its_tip_and_gives_a_result_within_its_stated_sigma() 
         let mut bench = Bench::new().practise_with(&options).armed();
         assert_eq!(bench.session().target, Target::Point);
         bench.wait("a profile with the tip", sees_target);
-        bench.cell(CellCommand::StartRun { num_stations: 7 });
-        bench.wait_for_rest();
-        let run = bench.workbench.cell().run.expect("a run");
-        assert_eq!(run.num_done, 7, "{:?}", bench.workbench.notices());
+        let mut num_done = 0;
+        // Where the noise of the moment hides the tip at three stations in a row, the run ends and says so; one starts again.
+        for _ in 0..2 {
+            if num_done < 7 {
+                bench.cell(CellCommand::StartRun { num_stations: 7 - num_done });
+                bench.wait_for_rest();
+                num_done += bench.workbench.cell().run.expect("a run").num_done;
+            }
+        }
+        assert_eq!(num_done, 7, "seed {seed}: {:?}", bench.workbench.notices());
         // What is seen beside the tip is no tip, and is not kept.
         assert!(bench.session().stations.iter().all(|station| station.captures.len() == 1));
         bench.check_tips();
