@@ -9,6 +9,7 @@ use std::time::Duration;
 use criterion::{Criterion, criterion_group, criterion_main};
 use handeye::report::evidence::Evidence;
 use handeye::report::figure::figures_of;
+use handeye::session::measure;
 use handeye::simulate::{Dirt, SimulationOptions, simulate};
 use handeye::watch::Unwatched;
 
@@ -21,11 +22,12 @@ fn figures(criterion: &mut Criterion) {
         ..SimulationOptions::default()
     };
     let session = simulate(&options);
-    let evidence = Evidence::gather(&session, &[], &mut Unwatched).expect("not cancelled");
+    let measured = measure(&session, None, &mut Unwatched).expect("not cancelled");
+    let evidence = Evidence::gather(&session, &measured, &[], &mut Unwatched).expect("not cancelled");
     let mut group = criterion.benchmark_group("report, 20 stations × 21 × 800");
     group.sample_size(10).measurement_time(Duration::from_secs(5));
     group.bench_function("computed from the session", |bencher| {
-        bencher.iter(|| Evidence::gather(black_box(&session), &[], &mut Unwatched));
+        bencher.iter(|| Evidence::gather(black_box(&session), &measured, &[], &mut Unwatched));
     });
     group.bench_function("figures laid out", |bencher| bencher.iter(|| figures_of(black_box(&evidence))));
     let figures = figures_of(&evidence);

@@ -16,7 +16,15 @@ use handeye::simulate::{SimulationOptions, simulate};
 use handeye::watch::Unwatched;
 
 fn figures(session: &Session) -> Vec<Figure> {
-    figures_of(&Evidence::gather(session, &[], &mut Unwatched).expect("not cancelled"))
+    figures_of(
+        &Evidence::gather(
+            session,
+            &session::measure(session, None, &mut Unwatched).expect("not cancelled"),
+            &[],
+            &mut Unwatched,
+        )
+        .expect("not cancelled"),
+    )
 }
 
 fn sample(file_name: &str) -> Session {

@@ -16,7 +16,13 @@ use handeye::watch::Unwatched;
 use serde_json::Value;
 
 fn evidence(session: &Session) -> Evidence {
-    Evidence::gather(session, &[], &mut Unwatched).expect("nobody cancels")
+    Evidence::gather(
+        session,
+        &session::measure(session, None, &mut Unwatched).expect("not cancelled"),
+        &[],
+        &mut Unwatched,
+    )
+    .expect("nobody cancels")
 }
 
 fn sample(file_name: &str) -> Session {

@@ -6,6 +6,7 @@ use crate::fit::{ArcFit, EdgeFit, Found, Refusal};
 use crate::geometry::{Base, Flange, Sensor, Target, Transform, Vec3};
 use crate::watch::{Cancelled, Watch};
 
+use super::motion::StreamProblem;
 use super::{Method, MethodResult, Solution, SolveError, ball, motion, plate};
 
 /// Where the sensor is mounted.
@@ -236,6 +237,8 @@ pub enum Problem {
     Plate(PlateProblem),
     /// From a target whose whole pose is seen.
     Motion(MotionProblem),
+    /// From the motion that a camera saw itself make, beside that of the robot.
+    Streams(StreamProblem),
 }
 
 impl Problem {
@@ -246,7 +249,7 @@ impl Problem {
             Self::Ball(_) => &Method::BALL,
             Self::Point(_) => &Method::POINT,
             Self::Plate(_) => &Method::PLATE,
-            Self::Motion(_) => &Method::MOTION,
+            Self::Motion(_) | Self::Streams(_) => &Method::MOTION,
         }
     }
 
@@ -255,7 +258,7 @@ impl Problem {
     pub const fn as_ball(&self) -> Option<&BallProblem> {
         match self {
             Self::Ball(ball) => Some(ball),
-            Self::Point(_) | Self::Plate(_) | Self::Motion(_) => None,
+            Self::Point(_) | Self::Plate(_) | Self::Motion(_) | Self::Streams(_) => None,
         }
     }
 
@@ -272,6 +275,7 @@ impl Problem {
             Self::Point(point) => ball::fixed_point::solve(point).map(|found| Solution { method, ..found }),
             Self::Plate(plate) => plate::solve(plate, method),
             Self::Motion(motion) => motion::solve(motion),
+            Self::Streams(streams) => motion::solve_streams(streams),
         }
     }
 

@@ -1,18 +1,18 @@
 //! `handeye check`: is this file a session, and is anything odd about it?
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use crate::calibrate::{Method, Mount, Solution, Warning, best_available};
 use crate::session::check::{Finding, findings};
 use crate::session::format::{Loaded, load_with_notes};
-use crate::session::{self, FurtherTarget, NothingToSolve, Session, measure};
+use crate::session::{self, FurtherTarget, NothingToSolve, Session, Target, measure_in};
 use crate::text::check::{finding_message, touched_point_off};
 use crate::text::warning_message;
 use crate::watch::Unwatched;
 
-use super::{EXIT_WRONG_INPUT, fail};
+use super::{EXIT_WRONG_INPUT, fail, folder_of};
 
 /// Arguments of `handeye check`.
 #[derive(Clone, Debug, clap::Args)]
@@ -25,7 +25,7 @@ pub struct CheckArgs {
 #[must_use]
 pub fn run(args: &CheckArgs) -> ExitCode {
     match load_with_notes(&args.file) {
-        Ok(loaded) => match super::print(&listing(&loaded)) {
+        Ok(loaded) => match super::print(&listing(folder_of(&args.file), &loaded)) {
             Ok(()) => ExitCode::SUCCESS,
             Err(exit_code) => exit_code,
         },
@@ -35,16 +35,21 @@ pub fn run(args: &CheckArgs) -> ExitCode {
 
 /// What `handeye check` prints: the session in one line, then a line a finding.
 #[must_use]
-pub fn listing(loaded: &Loaded) -> String {
+pub fn listing(folder: &Path, loaded: &Loaded) -> String {
     let Loaded { session, notes } = loaded;
     let all: Vec<Finding> = notes.iter().cloned().chain(findings(session)).collect();
-    let mut listing = format!(
-        "a valid session: {}, {} stations ({} enabled), {} profiles or points\n",
-        if session.name.is_empty() { "unnamed" } else { session.name.lines().next().unwrap_or_default() },
+    let name = if session.name.is_empty() { "unnamed" } else { session.name.lines().next().unwrap_or_default() };
+    let stations = format!(
+        "{} stations ({} enabled), {} profiles or points",
         session.stations.len(),
         session.stations.iter().filter(|station| station.enabled).count(),
         session.num_captures(),
     );
+    let measured = match &session.target {
+        Target::Rgbd { sequence } => format!("an RGB-D sequence in {sequence}"),
+        _ => stations,
+    };
+    let mut listing = format!("a valid session: {name}, {measured}\n");
     for FurtherTarget { name, stations, .. } in &session.further {
         // Writing to a string cannot fail.
         let _ = writeln!(listing, "with the further target {name}, {} stations", stations.len());
@@ -52,7 +57,7 @@ pub fn listing(loaded: &Loaded) -> String {
     for finding in &all {
         let _ = writeln!(listing, "{}: {}", finding.code(), finding_message(finding));
     }
-    let Outcome { warnings, touched_off, failure } = outcome_of_all_methods(session);
+    let Outcome { warnings, touched_off, failure } = outcome_of_all_methods(folder, session);
     for (method, warning) in &warnings {
         let _ = writeln!(listing, "{}: {} ({})", warning.code(), warning_message(warning), method.id());
     }
@@ -89,8 +94,8 @@ struct TouchedOff {
 }
 
 /// Runs all methods: arcs, radius and rotations show only when solved.
-fn outcome_of_all_methods(session: &Session) -> Outcome {
-    let Ok(measured) = measure(session, None, &mut Unwatched) else { return Outcome::default() };
+fn outcome_of_all_methods(folder: &Path, session: &Session) -> Outcome {
+    let Ok(measured) = measure_in(folder, session, &mut Unwatched) else { return Outcome::default() };
     let problem = match session::problem(session, &measured) {
         Ok(problem) => problem,
         // A workpiece is scanned for what a calibration is worth: that none is computed from it is not odd.
@@ -144,7 +149,7 @@ mod tests {
             "target": {"kind": "ball", "radius_mm": 15}, "stations": []}"#;
         let loaded = parse_with_notes(json.as_bytes(), "cell.json").expect("valid");
         assert_eq!(
-            listing(&loaded),
+            listing(Path::new(""), &loaded),
             "a valid session: cell 3, 0 stations (0 enabled), 0 profiles or points\n\
              no-stations: There are no stations yet.\n"
         );

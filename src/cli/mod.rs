@@ -3,7 +3,7 @@
 //! Exit status: 0 done, 2 the input is wrong (one line on standard error), 3 nothing could be computed.
 
 use std::io::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -107,6 +107,11 @@ impl Command {
 pub(crate) fn remark(message: &dyn std::fmt::Display) {
     // With nowhere to say it, the result is still one.
     writeln!(std::io::stderr(), "handeye: {message}").ok();
+}
+
+/// The folder that a file is in: what it names lies there.
+fn folder_of(file: &Path) -> &Path {
+    file.parent().unwrap_or(Path::new(""))
 }
 
 /// Prints the one line that goes with a failure.

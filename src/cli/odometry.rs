@@ -3,13 +3,17 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 
+use crate::calibrate::motion::solve_streams;
+use crate::calibrate::{Method, MethodResult};
 use crate::odometry::{Estimator, OdometryOptions, Tracking};
 use crate::report::odometry_file::{OdometryResult, frames_csv, odometry_file};
-use crate::session::sequence::{FrameRecord, Sequence, SequenceRun, trajectory_text};
+use crate::session::sequence::{FrameRecord, Sequence, TrackedSequence, trajectory, trajectory_text};
 use crate::session::{self, Session, Target};
 use crate::text::{odometry as words, warning_message};
 
+use super::progress::watched;
 use super::solve::six_numbers;
 use super::{EXIT_NOTHING_COMPUTED, EXIT_WRONG_INPUT, fail};
 
@@ -55,17 +59,19 @@ fn tracked(args: &OdometryArgs) -> Result<String, Refusal> {
     let name = name_of(&sequence.folder);
     let estimator = if args.published { Estimator::Published } else { Estimator::Ours };
     let options = OdometryOptions { estimator, period_s: args.every, ..OdometryOptions::default() };
-    let mut run = SequenceRun::new(&sequence, options);
-    while run.step(&sequence).is_some() {}
-    let trajectory = run.trajectory();
-    let evaluation = sequence.evaluate(&trajectory);
-    let hand_eye = sequence.hand_eye(run.records(), &session);
+    let tracked = watched("tracking frames", |watch| TrackedSequence::track(Arc::new(sequence), options, watch))
+        .map_err(|reason| (EXIT_NOTHING_COMPUTED, reason))?;
+    let TrackedSequence { sequence, records, evaluation } = &tracked;
+    let trajectory = trajectory(records);
+    let hand_eye = tracked
+        .streams(&session)
+        .map(|streams| MethodResult { method: Method::Motion, outcome: solve_streams(&streams) });
     let result = OdometryResult {
         name: &name,
         estimator,
-        records: run.records(),
+        records,
         notes: &sequence.notes,
-        evaluation,
+        evaluation: *evaluation,
         session: &session,
         hand_eye: hand_eye.as_ref(),
     };
@@ -80,7 +86,7 @@ fn tracked(args: &OdometryArgs) -> Result<String, Refusal> {
             folder,
             &[
                 ("trajectory.txt", &trajectory_text(poses)),
-                ("frames.csv", &frames_csv(run.records())),
+                ("frames.csv", &frames_csv(records)),
                 ("odometry.json", &file),
             ],
         )?;
@@ -88,7 +94,7 @@ fn tracked(args: &OdometryArgs) -> Result<String, Refusal> {
     if args.json {
         return Ok(file);
     }
-    let mut text = report(&sequence, &result);
+    let mut text = report(sequence, &result);
     if let Some(folder) = &args.out {
         text.push_str(&words::wrote_odometry(&folder.display().to_string()));
     }

@@ -9,12 +9,12 @@ use crate::geometry::{PoseConvention, Rigid, Vec3};
 use crate::plan::{Limits, Plan, RoughCell, from_nothing, next_stations};
 use crate::report::digits::fixed;
 use crate::report::result_file::plan_file;
-use crate::session::{self, Session, measure, problem};
+use crate::session::{self, Session, measure_in, problem};
 use crate::text::cli as words;
 use crate::text::diagnosis::fault_message;
 use crate::watch::Unwatched;
 
-use super::{EXIT_NOTHING_COMPUTED, EXIT_WRONG_INPUT, fail};
+use super::{EXIT_NOTHING_COMPUTED, EXIT_WRONG_INPUT, fail, folder_of};
 
 /// Beyond, the laser grazes what it lights.
 const MAX_TILT_DEG: f64 = 80.0;
@@ -84,7 +84,8 @@ pub fn run(args: &PlanArgs) -> ExitCode {
 
 /// The plan, and the method whose solution it rests on; none for a plan from nothing.
 fn planned(args: &PlanArgs, session: &Session) -> Result<(Plan, Option<Method>), String> {
-    let measured = measure(session, None, &mut Unwatched).map_err(|cancelled| cancelled.to_string())?;
+    let measured =
+        measure_in(folder_of(&args.file), session, &mut Unwatched).map_err(|cancelled| cancelled.to_string())?;
     let problem = problem(session, &measured).map_err(|refusal| refusal.to_string())?;
     let results = problem.solve_all(problem.methods(), &mut Unwatched).map_err(|cancelled| cancelled.to_string())?;
     let num = usize::from(args.stations);

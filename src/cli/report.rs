@@ -11,12 +11,12 @@ use crate::report::document::{InputFile, Options, SectionId, document};
 use crate::report::evidence::Evidence;
 use crate::report::files::{HTML, report_files, write_files};
 use crate::report::pdf;
-use crate::session;
+use crate::session::{self, measure_in};
 use crate::text::report_cli as words;
 use crate::verify::{Calibration, Origin};
 use crate::watch::Unwatched;
 
-use super::{EXIT_NOTHING_COMPUTED, EXIT_WRONG_INPUT, fail};
+use super::{EXIT_NOTHING_COMPUTED, EXIT_WRONG_INPUT, fail, folder_of};
 
 /// Arguments of `handeye report`.
 #[derive(Debug, Args)]
@@ -85,7 +85,9 @@ fn reported(args: &ReportArgs) -> Result<(String, Option<String>), Refusal> {
         given.push(Calibration { origin, flange_from_sensor: read.flange_from_sensor, workspace_point_std_mm: None });
     }
     let nothing = |error: &dyn std::fmt::Display| (EXIT_NOTHING_COMPUTED, error.to_string());
-    let evidence = Evidence::gather(&session, &given, &mut Unwatched).map_err(|cancelled| nothing(&cancelled))?;
+    let evidence = measure_in(folder_of(&args.file), &session, &mut Unwatched)
+        .and_then(|measured| Evidence::gather(&session, &measured, &given, &mut Unwatched))
+        .map_err(|cancelled| nothing(&cancelled))?;
     let document = document(&evidence, &inputs, &options(args));
     let files = report_files(&document, &evidence).map_err(|error| nothing(&error))?;
     let written = write_files(&files, &args.out).map_err(|error| wrong(&error))?;

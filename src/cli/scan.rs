@@ -11,12 +11,12 @@ use crate::report::calibration_file::{NamedCalibration, read_calibration_for};
 use crate::report::scan_file::scan_file;
 use crate::scan::files::{CloudFormat, read_cloud, write_cloud};
 use crate::scan::{Cloud, PointSet, Region, RoundKind, SegmentOptions, Wanted, plane_regions, region_name, shapes};
-use crate::session::{self, Known, SessionScan};
+use crate::session::{self, Known, SessionScan, measure_in};
 use crate::text::verify::matrix_lines;
 use crate::text::workpiece as words;
 use crate::watch::Unwatched;
 
-use super::{EXIT_NOTHING_COMPUTED, EXIT_WRONG_INPUT, fail};
+use super::{EXIT_NOTHING_COMPUTED, EXIT_WRONG_INPUT, fail, folder_of};
 
 /// Arguments of `handeye scan`.
 #[derive(Clone, Debug, clap::Args)]
@@ -151,7 +151,8 @@ fn from_session(args: &ScanArgs) -> Result<(String, Vec<Case>), Refusal> {
             });
             read.named()
         }
-        None => best_solution(&session, &mut Unwatched)
+        None => measure_in(folder_of(&args.file), &session, &mut Unwatched)
+            .and_then(|measured| best_solution(&session, &measured, &mut Unwatched))
             .unwrap_or_else(|cancelled| Err(cancelled.to_string()))
             .map(|solution| NamedCalibration::of(&solution))
             .map_err(|reason| (EXIT_NOTHING_COMPUTED, words::no_calibration(&reason)))?,

@@ -8,12 +8,12 @@ use crate::calibrate::{Mount, Verdict};
 use crate::report::best_solution;
 use crate::report::calibration_file::read_calibration;
 use crate::report::tool_frame::{Format, Name, Parent, ToolFrame, formats};
-use crate::session;
 use crate::session::export::write_text;
+use crate::session::{self, measure_in};
 use crate::text::tool_frame as words;
 use crate::watch::Unwatched;
 
-use super::{EXIT_NOTHING_COMPUTED, EXIT_WRONG_INPUT, fail};
+use super::{EXIT_NOTHING_COMPUTED, EXIT_WRONG_INPUT, fail, folder_of};
 
 /// Arguments of `handeye tool-frame`.
 #[derive(Clone, Debug, clap::Args)]
@@ -77,7 +77,8 @@ fn frame_of(file: &Path, args: &ToolFrameArgs) -> Result<ToolFrame, Refusal> {
         });
     }
     let session = session::load(file).map_err(|error| (EXIT_WRONG_INPUT, error.to_string()))?;
-    let best = best_solution(&session, &mut Unwatched)
+    let best = measure_in(folder_of(file), &session, &mut Unwatched)
+        .and_then(|measured| best_solution(&session, &measured, &mut Unwatched))
         .unwrap_or_else(|cancelled| Err(cancelled.to_string()))
         .map_err(|reason| (EXIT_NOTHING_COMPUTED, reason))?;
     if judge(&best).0 == Verdict::NotUsable {

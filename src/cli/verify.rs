@@ -9,13 +9,13 @@ use crate::report::calibration_file::read_calibration_for;
 use crate::report::digits::{fixed, signed};
 use crate::report::verification::{adding_targets_of, verification};
 use crate::report::verification_file::{Checked, verification_file};
-use crate::session::{self, Session, measure};
+use crate::session::{self, Session, measure_in};
 use crate::text::verify as words;
 use crate::verify::{Calibration, Distances, Measurement, Origin, Stability, TargetEvidence, Verification};
 use crate::watch::Unwatched;
 
 use super::solve::six_numbers;
-use super::{EXIT_NOTHING_COMPUTED, EXIT_WRONG_INPUT, fail};
+use super::{EXIT_NOTHING_COMPUTED, EXIT_WRONG_INPUT, fail, folder_of};
 
 /// Arguments of `handeye verify`.
 #[derive(Clone, Debug, clap::Args)]
@@ -49,7 +49,8 @@ fn verified(args: &VerifyArgs) -> Result<String, Refusal> {
     let session = with_further(args)?;
     let (given, checked) = given(args, &session)?;
     let nothing = |reason: String| (EXIT_NOTHING_COMPUTED, reason);
-    let measured = measure(&session, None, &mut Unwatched).map_err(|cancelled| nothing(cancelled.to_string()))?;
+    let measured = measure_in(folder_of(&args.file), &session, &mut Unwatched)
+        .map_err(|cancelled| nothing(cancelled.to_string()))?;
     let own = match session::problem(&session, &measured) {
         Ok(problem) => {
             let results = problem.solve_all(problem.methods(), &mut Unwatched);

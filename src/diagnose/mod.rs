@@ -112,7 +112,7 @@ pub fn diagnose_any(
             diagnose(Case { session, problem, results }, watch)
         }
         Problem::Plate(problem) => plate::examine(session, problem, results, watch),
-        Problem::Motion(_) => motion::examine(results, watch),
+        Problem::Motion(_) | Problem::Streams(_) => motion::examine(results, watch),
     }
 }
 

@@ -222,6 +222,6 @@ fn problem_of(session: &Session) -> Option<BallProblem> {
     match session::problem(session, &measured).ok()? {
         Problem::Ball(ball) => Some(ball),
         Problem::Point(tip) => Some(BallProblem { radius_mm: SIZE_FOR_A_TIP_MM, ..tip }),
-        Problem::Plate(_) | Problem::Motion(_) => None,
+        Problem::Plate(_) | Problem::Motion(_) | Problem::Streams(_) => None,
     }
 }

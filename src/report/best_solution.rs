@@ -1,7 +1,7 @@
 //! The calibration that a session stands for where nobody says which one is meant.
 
 use crate::calibrate::{Solution, best_available};
-use crate::session::{self, Session, measure};
+use crate::session::{self, Measured, Session};
 use crate::text::workpiece::ONLY_A_WORKPIECE;
 use crate::watch::{Cancelled, Watch};
 
@@ -9,10 +9,13 @@ use crate::watch::{Cancelled, Watch};
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn best_solution(session: &Session, watch: &mut dyn Watch) -> Result<Result<Solution, String>, Cancelled> {
-    let measured = measure(session, None, watch)?;
-    let own = session::problem(session, &measured);
-    let further = (0..session.further.len()).map(|idx| session::problem_of(session, &measured, idx));
+pub fn best_solution(
+    session: &Session,
+    measured: &Measured,
+    watch: &mut dyn Watch,
+) -> Result<Result<Solution, String>, Cancelled> {
+    let own = session::problem(session, measured);
+    let further = (0..session.further.len()).map(|idx| session::problem_of(session, measured, idx));
     let mut reason = ONLY_A_WORKPIECE.to_owned();
     for problem in std::iter::once(own).chain(further).flatten() {
         let results = problem.solve_all(problem.methods(), watch)?;

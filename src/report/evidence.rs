@@ -158,20 +158,24 @@ pub struct Evidence {
 }
 
 impl Evidence {
-    /// Computes everything. Calibrations that are `given` are judged along.
+    /// Computes everything of a session and its readings. Calibrations that are `given` are judged along.
     ///
     /// # Errors
     /// [`Cancelled`] if `watch` says so.
-    pub fn gather(session: &Session, given: &[Calibration], watch: &mut dyn Watch) -> Result<Self, Cancelled> {
-        let measured = measure(session, None, watch)?;
+    pub fn gather(
+        session: &Session,
+        measured: &Measured,
+        given: &[Calibration],
+        watch: &mut dyn Watch,
+    ) -> Result<Self, Cancelled> {
         let own = own_target_name(&session.target).to_owned();
-        let mut targets = vec![TargetEvidence::new(own, only_own(session), Some(&measured), watch)?];
+        let mut targets = vec![TargetEvidence::new(own, only_own(session), Some(measured), watch)?];
         for further in &session.further {
             if further.target != session::Target::Workpiece {
                 targets.push(TargetEvidence::new(further.name.clone(), only(session, further), None, watch)?);
             }
         }
-        let verification = found_on_other_data(session, &measured, &targets, given, watch)?;
+        let verification = found_on_other_data(session, measured, &targets, given, watch)?;
         let mut evidence = Self { session: session.clone(), targets, verification, parts: Vec::new() };
         if let Some(calibration) = evidence.calibration_for_scans() {
             let scans = session.scans();

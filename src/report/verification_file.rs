@@ -127,6 +127,7 @@ fn target_entry(target_idx: usize, target: &TargetEvidence, verification: &Verif
         Problem::Point(_) => "point",
         Problem::Plate(_) => "right-angle-plate",
         Problem::Motion(_) => "pose",
+        Problem::Streams(_) => "rgbd",
     };
     let rows = target.rows.iter().zip(&verification.calibrations).enumerate();
     let results: Vec<Value> = rows

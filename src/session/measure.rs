@@ -1,6 +1,7 @@
 //! From a session's profiles to arcs and edge points, and from these to the problem that the methods solve. Profiles of a scan
 //! are kept as they are: nothing is looked for in them.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use thiserror::Error;
@@ -8,8 +9,10 @@ use thiserror::Error;
 use crate::calibrate::{self, BallProblem, MotionProblem, Mount, PlateProblem, PlateStation, Problem, TargetNoise};
 use crate::fit::{ArcOptions, EdgeOptions, Feature, Sought};
 use crate::geometry::{Profile, Transform};
+use crate::odometry::OdometryOptions;
 use crate::watch::{Cancelled, Watch};
 
+use super::sequence::{Sequence, SequenceError, TrackedSequence};
 use super::{FurtherTarget, Reading, Session, Station, Target};
 
 /// Why a session is none for the ball methods.
@@ -23,16 +26,28 @@ pub struct NotABallSession {
 }
 
 /// Why no method computes a calibration from a target.
-#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum NothingToSolve {
     /// A workpiece is measured with a calibration, not for one.
     #[error("the session's target is a workpiece: it shows what a calibration is worth, but none is computed from it")]
     Workpiece,
-    /// Another command's.
+    /// A sequence lies beside its session's file.
     #[error(
-        "the session's target is an RGB-D sequence: `handeye odometry`, or the window, finds its motion, and from that the calibration"
+        "the session names the folder {folder} of an RGB-D sequence relative to its file, but has no file yet; \
+         save it beside the folder"
     )]
-    Rgbd,
+    SequenceWithoutPlace {
+        /// The folder's name.
+        folder: String,
+    },
+    /// The sequence cannot be read.
+    #[error(transparent)]
+    Sequence(#[from] SequenceError),
+    /// The camera's motion is known, but not the robot's.
+    #[error(
+        "the sequence has no flange.txt with the robot's poses: its motion is known, but not how the camera is mounted"
+    )]
+    NoFlange,
 }
 
 /// What is looked for in the profiles of a target; `None` where the profiles themselves are the result.
@@ -119,9 +134,30 @@ struct MeasuredTarget {
 pub struct Measured {
     target: MeasuredTarget,
     further: Vec<MeasuredTarget>,
+    sequence: Option<Result<Arc<TrackedSequence>, SequenceError>>,
 }
 
 impl Measured {
+    /// The same with the session's sequence tracked, or why it cannot be read.
+    #[must_use]
+    pub fn with_sequence(self, sequence: Result<Arc<TrackedSequence>, SequenceError>) -> Self {
+        Self { sequence: Some(sequence), ..self }
+    }
+
+    /// What is known of the sequence that a target names; none of another one.
+    fn sequence_of(&self, target: &Target) -> Option<Result<Arc<TrackedSequence>, SequenceError>> {
+        let Target::Rgbd { sequence: folder } = target else { return None };
+        self.sequence
+            .clone()
+            .filter(|known| known.as_ref().map_or(true, |tracked| tracked.sequence.folder.ends_with(folder)))
+    }
+
+    /// The motion that the camera of an RGB-D session saw.
+    #[must_use]
+    pub fn sequence(&self) -> Option<&TrackedSequence> {
+        self.sequence.as_ref()?.as_deref().ok()
+    }
+
     /// What was found in a capture; none in one of a scan, see [`Self::scan_line`].
     #[must_use]
     pub fn reading(&self, station_idx: usize, capture_idx: usize) -> Option<&calibrate::Reading> {
@@ -155,7 +191,20 @@ impl MeasuredTarget {
     }
 }
 
-/// Looks for arcs or edges in all profiles; what `previous` already holds is taken over.
+/// The same as [`measure`] for a session whose file is in `folder`: a sequence that it names is tracked.
+///
+/// # Errors
+/// [`Cancelled`] if `watch` says so.
+pub fn measure_in(folder: &Path, session: &Session, watch: &mut dyn Watch) -> Result<Measured, Cancelled> {
+    let measured = measure(session, None, watch)?;
+    let Target::Rgbd { sequence } = &session.target else { return Ok(measured) };
+    Ok(measured.with_sequence(match Sequence::open(&folder.join(sequence)) {
+        Ok(sequence) => Ok(Arc::new(TrackedSequence::track(Arc::new(sequence), OdometryOptions::default(), watch)?)),
+        Err(error) => Err(error),
+    }))
+}
+
+/// Looks for arcs or edges in all profiles; what `previous` already holds is taken over, a tracked sequence as well.
 ///
 /// # Errors
 /// [`Cancelled`] if `watch` says so.
@@ -181,7 +230,8 @@ pub fn measure(session: &Session, previous: Option<&Measured>, watch: &mut dyn W
             measure_target(&further.target, &further.stations, std_mm, known, &mut step)
         })
         .collect::<Result<_, _>>()?;
-    Ok(Measured { target, further })
+    let sequence = previous.and_then(|measured| measured.sequence_of(&session.target));
+    Ok(Measured { target, further, sequence })
 }
 
 fn measure_target(
@@ -226,6 +276,13 @@ fn measure_target(
 /// # Errors
 /// [`NothingToSolve`] for a target that no calibration is computed from.
 pub fn problem(session: &Session, measured: &Measured) -> Result<Problem, NothingToSolve> {
+    if let Target::Rgbd { sequence } = &session.target {
+        return match &measured.sequence {
+            None => Err(NothingToSolve::SequenceWithoutPlace { folder: sequence.clone() }),
+            Some(Err(error)) => Err(error.clone().into()),
+            Some(Ok(tracked)) => tracked.streams(session).map(Problem::Streams).ok_or(NothingToSolve::NoFlange),
+        };
+    }
     let std_mm = session.sensor.profile_std_mm;
     posed(session, &session.target, std_mm, &session.stations, &measured.target)
 }
@@ -254,7 +311,10 @@ pub fn ball_problem(session: &Session, measured: &Measured) -> Result<BallProble
         Ok(Problem::Point(_)) => Err(NotABallSession { kind: "a point" }),
         Ok(Problem::Motion(_)) => Err(NotABallSession { kind: "a pose" }),
         Err(NothingToSolve::Workpiece) => Err(NotABallSession { kind: "a workpiece" }),
-        Err(NothingToSolve::Rgbd) => Err(NotABallSession { kind: "an RGB-D sequence" }),
+        Ok(Problem::Streams(_))
+        | Err(NothingToSolve::SequenceWithoutPlace { .. } | NothingToSolve::Sequence(_) | NothingToSolve::NoFlange) => {
+            Err(NotABallSession { kind: "an RGB-D sequence" })
+        }
     }
 }
 
@@ -301,7 +361,10 @@ fn posed(
             stations: posed.map(|(_, station)| station).collect(),
         }),
         Target::Workpiece => return Err(NothingToSolve::Workpiece),
-        Target::Rgbd { .. } => return Err(NothingToSolve::Rgbd),
+        // As a further target a session takes none.
+        Target::Rgbd { sequence } => {
+            return Err(NothingToSolve::SequenceWithoutPlace { folder: sequence.clone() });
+        }
     })
 }
 

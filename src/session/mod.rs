@@ -20,10 +20,11 @@ pub use error::SessionError;
 pub use format::{load, load_with_bytes, parse, save, to_json};
 pub use history::{History, new_gesture};
 pub use measure::{
-    Measured, NotABallSession, NothingToSolve, ScanLine, ScanRange, ball_problem, measure, problem, problem_of, sought,
+    Measured, NotABallSession, NothingToSolve, ScanLine, ScanRange, ball_problem, measure, measure_in, problem,
+    problem_of, sought,
 };
 pub use model::{
     Capture, Edge, FurtherTarget, Known, Published, Reading, Robot, Sensor, Session, Station, Target, Truth,
-    WrittenAngles,
+    UnknownFields, WrittenAngles,
 };
 pub use scans::SessionScan;

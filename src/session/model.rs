@@ -239,7 +239,7 @@ pub struct Truth {
     pub target_in_base_mm: Vec3,
     /// The true plate: origin in its corner, x along edge p, y along edge q. For [`Mount::Fixed`] it is in the flange.
     pub base_from_plate: Option<Rigid>,
-    /// The true pose of a marker or board. For [`Mount::Fixed`] it is in the flange.
+    /// The true pose of a marker or board, or of the world of an RGB-D sequence. For [`Mount::Fixed`] it is in the flange.
     pub base_from_target: Option<Rigid>,
     /// Fields unknown to us.
     pub unknown: UnknownFields,
@@ -292,6 +292,12 @@ impl Session {
             truth: None,
             unknown: UnknownFields::new(),
         }
+    }
+
+    /// Whether there is nothing yet that anything could be computed from.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.stations.is_empty() && self.further.is_empty() && !matches!(self.target, Target::Rgbd { .. })
     }
 
     /// Whether everything that is computed of the other session holds of this one: they differ in names and notes at most.

@@ -2,11 +2,13 @@
 
 use egui::{Align2, CornerRadius, Rect, Role, Sense, TextStyle, Ui, WidgetInfo, vec2};
 
-use crate::app::{CellView, Workbench};
+use crate::app::{CellView, Results, Workbench};
 use crate::calibrate::Verdict;
 use crate::device::LinkState;
 use crate::diagnose::{Severity, verdict_with};
-use crate::session::Target;
+use crate::odometry::Tracking;
+use crate::session::sequence::FrameRecord;
+use crate::session::{Session, Target};
 use crate::text::capture as capture_words;
 use crate::text::methods::verdict_mark;
 use crate::text::report_panel as report_words;
@@ -198,6 +200,19 @@ fn verify_mark(workbench: &Workbench) -> Mark {
     }
 }
 
+/// Whether nothing is seen of the target that the answer comes from.
+fn has_nothing(session: &Session) -> bool {
+    session.stations.is_empty() && !matches!(session.target, Target::Rgbd { .. })
+}
+
+/// Frames of a sequence that were to be tracked and have no pose.
+fn num_untracked(results: &Results) -> usize {
+    let is_untracked = |record: &&FrameRecord| {
+        record.outcome.as_ref().map_or(true, |summary| matches!(summary.tracking, Tracking::Lost(_)))
+    };
+    results.measured.sequence().map_or(0, |tracked| tracked.records.iter().filter(is_untracked).count())
+}
+
 fn mark(workbench: &Workbench, selection: &Selection, num_pose_remarks: usize, step: Step) -> Mark {
     if step == Step::Capture {
         return capture_mark(workbench.cell());
@@ -218,9 +233,9 @@ fn mark(workbench: &Workbench, selection: &Selection, num_pose_remarks: usize, s
         Step::Capture | Step::Report => Mark::None,
         Step::Verify => verify_mark(workbench),
         // Nothing is no reason for a tick, nor for a cross.
-        Step::Arcs | Step::Poses | Step::Compare | Step::Diagnosis if document.session.stations.is_empty() => {
-            Mark::None
-        }
+        Step::Arcs if is_sequence(workbench) => counted(num_untracked(results)),
+        Step::Poses if document.session.stations.is_empty() => Mark::None,
+        Step::Arcs | Step::Compare | Step::Diagnosis if has_nothing(&document.session) => Mark::None,
         Step::Arcs => counted(super::poses::model::num_refused(&document.session, results)),
         Step::Poses => counted(num_pose_remarks),
         Step::Compare => match results.method(selection.method).map(|result| &result.outcome) {

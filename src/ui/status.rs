@@ -83,9 +83,6 @@ fn next(workbench: &Workbench, step: Step) -> Option<(String, Action)> {
         }
         Step::Arcs => (words::NEXT_POSES, Action::GoTo(Step::Poses)),
         Step::Poses => (words::NEXT_COMPARE, Action::GoTo(Step::Compare)),
-        Step::Compare if matches!(document.session.target, Target::Rgbd { .. }) => {
-            (report_words::NEXT_REPORT, Action::GoTo(Step::Report))
-        }
         Step::Compare => (words::NEXT_DIAGNOSIS, Action::GoTo(Step::Diagnosis)),
         Step::Diagnosis | Step::Verify if document.is_unsaved() => (words::NEXT_SAVE, Action::Save),
         Step::Diagnosis | Step::Verify | Step::Report => (report_words::NEXT_REPORT, Action::GoTo(Step::Report)),

@@ -110,6 +110,7 @@ pub fn evaluate(
         Problem::Ball(ball) => on_ball(ball, flange_from_sensor, touched_mm),
         Problem::Point(point) => on_tip(&point.stations, flange_from_sensor, touched_mm),
         Problem::Motion(motion) => on_tip(&motion.stations, flange_from_sensor, touched_mm),
+        Problem::Streams(streams) => on_tip(&streams.stations(), flange_from_sensor, touched_mm),
         Problem::Plate(plate) => on_plate(plate, flange_from_sensor),
     }
 }

@@ -1,6 +1,7 @@
 //! All calibrations at hand on all targets at hand.
 
 use crate::calibrate::joint::{JointSolution, solve_joint};
+use crate::calibrate::motion::CameraPose;
 use crate::calibrate::{Method, MethodResult, Problem, Reading, SolveError, Station, best_available};
 use crate::fit::Refusal;
 use crate::geometry::{Flange, Sensor, Transform, Vec3};
@@ -184,15 +185,21 @@ impl Verification {
     }
 }
 
+/// The stations that a problem was posed with; streams have none.
 fn stations(problem: &Problem) -> Vec<&Station> {
     match problem {
         Problem::Ball(ball) | Problem::Point(ball) => ball.stations.iter().collect(),
         Problem::Motion(motion) => motion.stations.iter().collect(),
         Problem::Plate(plate) => plate.stations.iter().map(|at_plate| &at_plate.station).collect(),
+        Problem::Streams(_) => Vec::new(),
     }
 }
 
 fn points_in_sensor(problem: &Problem) -> Vec<Vec3> {
+    if let Problem::Streams(streams) = problem {
+        let world_in_sensor = |pose: &CameraPose| pose.world_from_sensor.inverse().translation_mm();
+        return streams.camera.iter().map(world_in_sensor).collect();
+    }
     let captures = stations(problem).into_iter().flat_map(|station| &station.captures);
     let seen = captures.filter_map(|capture| match &capture.reading {
         Reading::Arc(arc) => Some(Vec3::new(arc.circle.x_mm, 0.0, arc.circle.z_mm)),
@@ -216,7 +223,10 @@ impl TargetEvidence {
     /// How many captures its stations have, refused ones among them.
     #[must_use]
     pub fn num_captures(&self) -> usize {
-        stations(&self.problem).iter().map(|station| station.captures.len()).sum()
+        match &self.problem {
+            Problem::Streams(streams) => streams.camera.len(),
+            problem => stations(problem).iter().map(|station| station.captures.len()).sum(),
+        }
     }
 
     /// The captures that no calibration is held against, as nothing was found in them.

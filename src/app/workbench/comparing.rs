@@ -7,7 +7,9 @@ use crate::geometry::Vec3;
 use crate::report::result_history::{
     Comparison, History, NotCompared, compared, compared_session, read_compared, read_history,
 };
+use crate::session::measure;
 use crate::text::compare_results as words;
+use crate::watch::Cancelled;
 
 use super::Workbench;
 
@@ -76,11 +78,16 @@ impl Workbench {
             let name = file.map_or_else(|| document.session.name.clone(), |name| name.to_string_lossy().into_owned());
             (name, std::sync::Arc::clone(&document.session))
         });
+        let known = self.known_readings();
         let revision = self.document.as_ref().map_or(0, |document| document.data_revision);
         self.comparison.start("compare", &self.wake, revision, move |watch| {
+            let not_read = |cancelled: Cancelled| NotCompared::NothingComputed(cancelled.to_string());
             let mut read = |side: &Side| match (side, &session) {
                 (Side::File(path), _) => read_compared(path, watch),
-                (Side::OpenSession, Some((name, session))) => compared_session(session, name, watch),
+                (Side::OpenSession, Some((name, session))) => {
+                    let measured = measure(session, known.as_deref(), watch).map_err(not_read)?;
+                    compared_session(session, &measured, name, watch)
+                }
                 (Side::OpenSession, None) => Err(NotCompared::Wrong(words::NO_OPEN_SESSION.to_owned())),
             };
             let sides_read = read(&sides.from).and_then(|from| Ok((from, read(&sides.to)?)));

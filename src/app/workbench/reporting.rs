@@ -9,7 +9,7 @@ use crate::report::document::{Document, InputFile, Options, document};
 use crate::report::evidence::Evidence;
 use crate::report::files::{HTML, report_files, write_files};
 use crate::report::open::open;
-use crate::session::{self, format::Stamp};
+use crate::session::{self, format::Stamp, measure};
 use crate::text::report as text;
 use crate::text::report_panel as words;
 use crate::verify::{Calibration, Origin};
@@ -76,8 +76,10 @@ impl Workbench {
         let (session, revision, given) = (Arc::clone(&open.session), open.revision, self.given.clone());
         let file = open.path.clone().zip(open.stamp).filter(|_| !open.is_unsaved());
         let title = open.title();
+        let known = self.known_readings();
         self.report.start("gather report", &self.wake, revision, move |watch| {
-            let evidence = Evidence::gather(&session, &given, watch)?;
+            let measured = measure(&session, known.as_deref(), watch)?;
+            let evidence = Evidence::gather(&session, &measured, &given, watch)?;
             let of_session = match file {
                 Some((path, stamp)) => InputFile::stamped(title, &stamp).with_remark(since(&path, &stamp)),
                 None => InputFile::new(title, session::to_json(&session).as_bytes()).with_remark(Some(text::NOT_SAVED)),

@@ -13,7 +13,7 @@ use crate::scan::{
     Cloud, PointSet, Region, SegmentOptions, Shapes, Wanted, grow_plane, plane_regions, region_name, shapes,
     suitable_tolerance_mm,
 };
-use crate::session::{Known, Session};
+use crate::session::{Known, Measured, Session, measure};
 use crate::text::workpiece as words;
 use crate::watch::Watch;
 
@@ -296,6 +296,7 @@ impl Workbench {
         self.scans.chosen = Some((scan_idx, calibration.clone()));
         self.scans.is_examining = true;
         self.scans.failure = None;
+        let known = self.known_readings();
         self.scans.working.start("examine scan", &self.wake, move |watch| {
             let found = match (&calibration, results) {
                 (ScanCalibration::Best, Some(results)) if best_available(&results.methods).is_some() => {
@@ -308,7 +309,7 @@ impl Workbench {
             };
             let found = match found {
                 Some(found) => found,
-                None => calibration_of(&session, &calibration, watch)?,
+                None => calibration_of(&session, known.as_deref(), &calibration, watch)?,
             };
             let scans = session.scans();
             let scan = scans.get(scan_idx).ok_or_else(|| words::NO_SCAN.to_owned())?;
@@ -435,6 +436,7 @@ impl Workbench {
 
 fn calibration_of(
     session: &Session,
+    known: Option<&Measured>,
     calibration: &ScanCalibration,
     watch: &mut dyn Watch,
 ) -> Result<NamedCalibration, String> {
@@ -449,7 +451,8 @@ fn calibration_of(
         }
         ScanCalibration::Verified(named) => Ok(named.clone()),
         ScanCalibration::Of(method) => Err(words::no_calibration(&words::no_result_of(*method))),
-        ScanCalibration::Best => best_solution(session, watch)
+        ScanCalibration::Best => measure(session, known, watch)
+            .and_then(|measured| best_solution(session, &measured, watch))
             .map_err(|cancelled| cancelled.to_string())?
             .map(|solution| NamedCalibration::of(&solution))
             .map_err(|reason| words::no_calibration(&reason)),

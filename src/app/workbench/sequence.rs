@@ -7,10 +7,9 @@ use std::time::Instant;
 
 use crate::app::jobs::{JobOutcome, JobWatch, Slot, Wake};
 use crate::odometry::align::aligned;
-use crate::odometry::{DepthImage, Estimator, Evaluation, Match, OdometryOptions, RgbdFrame};
-use crate::session::sequence::{FrameError, FrameRecord, Sequence, SequenceRun};
+use crate::odometry::{DepthImage, Estimator, Match, OdometryOptions, RgbdFrame};
+use crate::session::sequence::{FrameError, FrameRecord, Sequence, SequenceError, SequenceRun, TrackedSequence};
 use crate::session::{Session, measure};
-use crate::text::sequence as words;
 use crate::watch::{Cancelled, Watch};
 
 use super::{Results, Workbench};
@@ -53,17 +52,11 @@ pub struct FramePictures {
     pub pictures: Result<(RgbdFrame, DepthImage), FrameError>,
 }
 
-/// A sequence that was tracked to its end.
+/// What a sequence was tracked by, and what came of it.
 #[derive(Debug)]
-pub struct Tracked {
-    /// What was tracked, and how.
+struct Known {
     key: Key,
-    /// The sequence.
-    pub sequence: Arc<Sequence>,
-    /// What is known of each frame.
-    pub records: Vec<FrameRecord>,
-    /// How far the trajectory is off the true one, where that is known.
-    pub evaluation: Option<Evaluation>,
+    tracked: Arc<TrackedSequence>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -76,7 +69,7 @@ struct Key {
 enum News {
     Opened(Arc<Sequence>),
     Frame(Box<SeenFrame>),
-    Done(Arc<Tracked>),
+    Done(Known),
 }
 
 /// The sequence on the bench.
@@ -86,7 +79,7 @@ pub struct SequenceBench {
     run: u64,
     sequence: Option<Arc<Sequence>>,
     seen: Vec<SeenFrame>,
-    tracked: Option<Arc<Tracked>>,
+    known: Option<Known>,
     news: Option<Receiver<News>>,
     looking: Slot<FramePictures>,
     pictures: Option<Arc<FramePictures>>,
@@ -124,8 +117,8 @@ impl SequenceBench {
 
     /// All of it, once it was tracked to its end.
     #[must_use]
-    pub fn tracked(&self) -> Option<&Tracked> {
-        self.tracked.as_deref()
+    pub fn tracked(&self) -> Option<&TrackedSequence> {
+        self.known.as_ref().map(|known| &*known.tracked)
     }
 
     /// The pictures of the frame that was looked at last.
@@ -199,33 +192,31 @@ impl Workbench {
     pub(super) fn start_tracking(&mut self, session: &Arc<Session>, name: &str, path: Option<&Path>, revision: u64) {
         let folder = path.and_then(Path::parent).map(|folder| folder.join(name));
         let key = folder.map(|folder| Key { folder, options: self.sequence.options });
-        let known = self.sequence.tracked.take().filter(|tracked| Some(&tracked.key) == key.as_ref());
+        let known = self.sequence.known.take().filter(|known| Some(&known.key) == key.as_ref());
+        let tracked = known.as_ref().map(|known| Arc::clone(&known.tracked));
         let (sender, news) = channel();
-        match &known {
-            Some(_) => self.sequence.news = None,
-            None => {
-                self.sequence = self.sequence.begun_anew(Some(news));
+        match known {
+            Some(known) => {
+                self.sequence.news = None;
+                self.sequence.known = Some(known);
             }
+            None => self.sequence = self.sequence.begun_anew(Some(news)),
         }
-        self.sequence.tracked.clone_from(&known);
         let session = Arc::clone(session);
         let wake = Arc::clone(&self.wake);
         self.solving.start("track", &self.wake, move |watch| {
             let start = Instant::now();
-            let tracked = match (known, key) {
-                (Some(tracked), _) => Ok(tracked),
-                (None, Some(key)) => track(key, &sender, &wake, watch)?,
-                (None, None) => Err(words::NO_FILE_YET.to_owned()),
+            let sequence = match (tracked, key) {
+                (Some(tracked), _) => Some(Ok(tracked)),
+                (None, Some(key)) => Some(track(key, &sender, &wake, watch)?),
+                (None, None) => None,
             };
-            let measured = Arc::new(measure(&session, None, watch)?);
-            let hand_eye = tracked.and_then(|tracked| {
-                tracked.sequence.hand_eye(&tracked.records, &session).ok_or_else(|| words::NO_FLANGE.to_owned())
-            });
-            let (methods, refusal) = match hand_eye {
-                Ok(found) => (vec![found], None),
-                Err(refusal) => (Vec::new(), Some(refusal)),
+            let measured = measure(&session, None, watch)?;
+            let measured = match sequence {
+                Some(sequence) => measured.with_sequence(sequence),
+                None => measured,
             };
-            Ok(Results { revision, measured, problem: None, methods, refusal, elapsed: start.elapsed() })
+            Results::of(&session, Arc::new(measured), revision, start, watch)
         });
     }
 
@@ -237,7 +228,7 @@ impl Workbench {
                 match news {
                     News::Opened(sequence) => self.sequence.sequence = Some(sequence),
                     News::Frame(frame) => self.sequence.seen.push(*frame),
-                    News::Done(tracked) => self.sequence.tracked = Some(tracked),
+                    News::Done(known) => self.sequence.known = Some(known),
                 }
             }
         }
@@ -263,13 +254,13 @@ impl Workbench {
     }
 }
 
-/// Goes through a sequence and tells of every frame; why it cannot be read, in words.
+/// Goes through a sequence and tells of every frame; or why it cannot be read.
 fn track(
     key: Key,
     sender: &Sender<News>,
     wake: &Wake,
     watch: &mut JobWatch,
-) -> Result<Result<Arc<Tracked>, String>, Cancelled> {
+) -> Result<Result<Arc<TrackedSequence>, SequenceError>, Cancelled> {
     // Nobody listens any more if another sequence is on the bench: then the watch says so too.
     let tell = |news: News| {
         sender.send(news).ok();
@@ -277,7 +268,7 @@ fn track(
     };
     let sequence = match Sequence::open(&key.folder) {
         Ok(sequence) => Arc::new(sequence),
-        Err(error) => return Ok(Err(error.to_string())),
+        Err(error) => return Ok(Err(error)),
     };
     tell(News::Opened(Arc::clone(&sequence)));
     let TrackOptions { estimator, period_s } = key.options;
@@ -292,8 +283,7 @@ fn track(
         };
         tell(News::Frame(Box::new(SeenFrame { record, features, matches })));
     }
-    let evaluation = sequence.evaluate(&run.trajectory());
-    let tracked = Arc::new(Tracked { key, sequence, records: run.records().to_vec(), evaluation });
-    tell(News::Done(Arc::clone(&tracked)));
+    let tracked = Arc::new(TrackedSequence::of(sequence, &run));
+    tell(News::Done(Known { key, tracked: Arc::clone(&tracked) }));
     Ok(Ok(tracked))
 }

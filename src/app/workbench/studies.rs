@@ -8,7 +8,7 @@ use crate::calibrate::{BallProblem, Method, MethodResult, Problem, best_availabl
 use crate::diagnose;
 use crate::plan::{Limits, PlanRefusal, next_stations};
 use crate::session::{Measured, Session, Target, measure, problem};
-use crate::watch::Cancelled;
+use crate::watch::{Cancelled, Watch};
 
 use super::Workbench;
 
@@ -35,6 +35,24 @@ pub struct Results {
 }
 
 impl Results {
+    /// Runs the methods for a session's target on its readings; `start` is when these were begun.
+    pub(super) fn of(
+        session: &Session,
+        measured: Arc<Measured>,
+        revision: u64,
+        start: Instant,
+        watch: &mut dyn Watch,
+    ) -> Result<Self, Cancelled> {
+        let (problem, methods, refusal) = match problem(session, &measured) {
+            Ok(problem) => {
+                let methods = problem.solve_all(problem.methods(), watch)?;
+                (Some(Arc::new(problem)), methods, None)
+            }
+            Err(refusal) => (None, Vec::new(), Some(refusal.to_string())),
+        };
+        Ok(Self { revision, measured, problem, methods, refusal, elapsed: start.elapsed() })
+    }
+
     /// The result of one method.
     #[must_use]
     pub fn method(&self, method: Method) -> Option<&MethodResult> {
@@ -82,19 +100,17 @@ impl Workbench {
             self.start_tracking(&session, sequence, path.as_deref(), revision);
             return;
         }
-        let previous = self.results.as_ref().map(|results| Arc::clone(&results.measured));
+        let previous = self.known_readings();
         self.solving.start("solve", &self.wake, move |watch| {
             let start = Instant::now();
             let measured = Arc::new(measure(&session, previous.as_deref(), watch)?);
-            let (problem, methods, refusal) = match problem(&session, &measured) {
-                Ok(problem) => {
-                    let methods = problem.solve_all(problem.methods(), watch)?;
-                    (Some(Arc::new(problem)), methods, None)
-                }
-                Err(refusal) => (None, Vec::new(), Some(refusal.to_string())),
-            };
-            Ok(Results { revision, measured, problem, methods, refusal, elapsed: start.elapsed() })
+            Results::of(&session, measured, revision, start, watch)
         });
+    }
+
+    /// The readings of the latest results, of whatever revision: what they hold need not be looked for again.
+    pub(super) fn known_readings(&self) -> Option<Arc<Measured>> {
+        self.results.as_ref().map(|results| Arc::clone(&results.measured))
     }
 
     /// Document, problem and results of the same revision, if there are any.

@@ -12,6 +12,7 @@ pub mod pose;
 
 mod assemble;
 mod found;
+mod matched;
 mod measured;
 mod noise;
 mod reduced;

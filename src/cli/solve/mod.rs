@@ -12,12 +12,12 @@ use crate::calibrate::{Method, MethodResult, Problem, SolveError, best_available
 use crate::diagnose::Diagnosis;
 use crate::report::evidence::Examined;
 use crate::report::result_file::{Examination, result_file};
-use crate::session::{self, Session, measure};
+use crate::session::{self, Session, Target, measure_in};
 use crate::text::cli::no_such_station;
 use crate::text::diagnosis::first_finding;
 
 use super::progress::watched;
-use super::{EXIT_NOTHING_COMPUTED, EXIT_WRONG_INPUT, fail};
+use super::{EXIT_NOTHING_COMPUTED, EXIT_WRONG_INPUT, fail, folder_of};
 
 mod diagnosis;
 mod paper_tables;
@@ -76,10 +76,18 @@ pub fn run(args: &SolveArgs) -> ExitCode {
     solved(args, &session).unwrap_or_else(|reason| fail(EXIT_NOTHING_COMPUTED, &reason))
 }
 
+/// What takes its time before anything is solved.
+const fn reading(target: &Target) -> &'static str {
+    match target {
+        Target::Rgbd { .. } => "tracking frames",
+        _ => "reading profiles",
+    }
+}
+
 /// # Errors
 /// Why there is nothing to print, in one line.
 fn solved(args: &SolveArgs, session: &Session) -> Result<ExitCode, String> {
-    let measured = watched("reading profiles", |progress| measure(session, None, progress))?;
+    let measured = watched(reading(&session.target), |progress| measure_in(folder_of(&args.file), session, progress))?;
     let problem = session::problem(session, &measured).map_err(|refusal| refusal.to_string())?;
     let methods = if args.methods.is_empty() { problem.methods() } else { args.methods.as_slice() };
     let results = watched("solving", |progress| problem.solve_all(methods, progress))?;

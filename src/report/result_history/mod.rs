@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use crate::calibrate::Mount;
 use crate::geometry::Vec3;
-use crate::session::{self, Session};
+use crate::session::{self, Measured, Session, measure_in};
 use crate::sheet::natural_key;
 use crate::text::compare_results as words;
 use crate::verify::difference::{Difference, Known, PointShift, Stated, difference, point_shift};
@@ -133,7 +133,9 @@ pub fn read_compared(path: &Path, watch: &mut dyn Watch) -> Result<Compared, Not
         let is_session = fs::read_to_string(path).is_ok_and(|text| text.contains("\"handeye-session\""));
         NotCompared::Wrong(if is_session { error.to_string() } else { not_a_calibration.to_string() })
     })?;
-    let compared = compared_session(&session, &file_name, watch)?;
+    let measured = measure_in(path.parent().unwrap_or(Path::new("")), &session, watch)
+        .map_err(|cancelled| NotCompared::NothingComputed(format!("{file_name}: {cancelled}")))?;
+    let compared = compared_session(&session, &measured, &file_name, watch)?;
     Ok(Compared { checksum: checksum(path), ..compared })
 }
 
@@ -146,9 +148,16 @@ fn checksum(path: &Path) -> Option<String> {
 ///
 /// # Errors
 /// [`NotCompared`].
-pub fn compared_session(session: &Session, name: &str, watch: &mut dyn Watch) -> Result<Compared, NotCompared> {
+pub fn compared_session(
+    session: &Session,
+    measured: &Measured,
+    name: &str,
+    watch: &mut dyn Watch,
+) -> Result<Compared, NotCompared> {
     let computed = |reason: String| NotCompared::NothingComputed(format!("{name}: {reason}"));
-    let best = best_solution(session, watch).map_err(|cancelled| computed(cancelled.to_string()))?.map_err(computed)?;
+    let best = best_solution(session, measured, watch)
+        .map_err(|cancelled| computed(cancelled.to_string()))?
+        .map_err(computed)?;
     let date = session.unknown.get("date").and_then(serde_json::Value::as_str);
     let compared = Compared {
         name: format!("{name}: {}", best.method.id()),

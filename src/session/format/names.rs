@@ -29,8 +29,20 @@ pub(super) fn word_of<T: Copy + PartialEq>(choices: &[(&'static str, T)], value:
     choices.iter().find(|(_, choice)| *choice == value).map_or("", |(word, _)| word)
 }
 
-const SESSION: &[&str] =
-    &["format", "version", "name", "notes", "robot", "sensor", "target", "mount", "stations", "further", "published"];
+const SESSION: &[&str] = &[
+    "format",
+    "version",
+    "name",
+    "notes",
+    "robot",
+    "sensor",
+    "target",
+    "mount",
+    "stations",
+    "further",
+    "published",
+    "truth",
+];
 pub(super) const FURTHER: &[&str] = &["name", "target", "profile_std_mm", "stations"];
 pub(super) const ROBOT: &[&str] =
     &["model", "pose_convention", "pose_notation", "position_std_mm", "orientation_std_deg"];
@@ -63,16 +75,12 @@ pub(super) const TRUE_SENSOR: ByMount = ByMount { on_flange: "flange_from_sensor
 pub(super) const TRUE_BALL: ByMount = ByMount { on_flange: "ball_in_base_mm", fixed: "ball_in_flange_mm" };
 pub(super) const TRUE_POINT: ByMount = ByMount { on_flange: "point_in_base_mm", fixed: "point_in_flange_mm" };
 pub(super) const TRUE_TARGET: ByMount = ByMount { on_flange: "base_from_target", fixed: "flange_from_target" };
+pub(super) const TRUE_WORLD: ByMount = ByMount { on_flange: "base_from_world", fixed: "flange_from_world" };
 pub(super) const TRUE_PLATE: ByMount = ByMount { on_flange: "base_from_plate", fixed: "flange_from_plate" };
 
 /// Fields of the top level that are ours for this target; any others are kept as they are.
 pub(super) fn session(target: &Target) -> Vec<&'static str> {
-    let of_target: &[&str] = match target {
-        Target::Rgbd { .. } => &["sequence"],
-        Target::Ball { .. } | Target::RightAnglePlate | Target::Point | Target::Pose { .. } | Target::Workpiece => {
-            &["truth"]
-        }
-    };
+    let of_target: &[&str] = if matches!(target, Target::Rgbd { .. }) { &["sequence"] } else { &[] };
     [SESSION, of_target].concat()
 }
 
@@ -94,7 +102,8 @@ pub(super) fn truth(target: &Target) -> Vec<&'static str> {
         Target::Point => Some(TRUE_POINT),
         Target::RightAnglePlate => Some(TRUE_PLATE),
         Target::Pose { .. } => Some(TRUE_TARGET),
-        Target::Workpiece | Target::Rgbd { .. } => None,
+        Target::Rgbd { .. } => Some(TRUE_WORLD),
+        Target::Workpiece => None,
     };
     [Some(TRUE_SENSOR), of_target].into_iter().flatten().flat_map(|names| [names.on_flange, names.fixed]).collect()
 }

@@ -73,11 +73,7 @@ pub(super) fn session(root: &Object<'_>, mended: &mut Mended) -> Result<Session,
     let mut unknown = root.unknown(&names::session(&target));
     unknown.extend(of_target);
     let stations = stations(root, &target, mended)?;
-    // The truth of a sequence is not ours to read: it is among the unknown fields.
-    let truth = match root.optional("truth") {
-        Some(cursor) if !matches!(target, Target::Rgbd { .. }) => Some(truth(&cursor, &target, mended)?),
-        _ => None,
-    };
+    let truth = root.optional("truth").map(|cursor| truth(&cursor, &target, mended)).transpose()?;
     Ok(Session {
         name: root.text_or_empty("name")?,
         notes: root.text_or_empty("notes")?,
@@ -503,6 +499,10 @@ fn truth(cursor: &Cursor<'_>, target: &Target, mended: &mut Mended) -> Result<Tr
         Target::Pose { .. } => {
             let base_from_target = whole(names::TRUE_TARGET)?;
             (base_from_target.translation.vector, None, Some(base_from_target))
+        }
+        Target::Rgbd { .. } if object.optional(present(names::TRUE_WORLD)).is_some() => {
+            let base_from_world = whole(names::TRUE_WORLD)?;
+            (base_from_world.translation.vector, None, Some(base_from_world))
         }
         Target::Workpiece | Target::Rgbd { .. } => (Vec3::zeros(), None, None),
     };

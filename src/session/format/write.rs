@@ -275,7 +275,12 @@ fn truth(out: &mut Writer, truth: &Truth, target: &Target, mount: Mount) {
                 true_pose(out, names::TRUE_TARGET, base_from_target);
             }
         }
-        Target::Workpiece | Target::Rgbd { .. } => {}
+        Target::Rgbd { .. } => {
+            if let Some(base_from_world) = &truth.base_from_target {
+                true_pose(out, names::TRUE_WORLD, base_from_world);
+            }
+        }
+        Target::Workpiece => {}
     }
     out.unknown(&truth.unknown, &names::truth(target));
     out.close();

@@ -5,10 +5,10 @@
 
 mod camera_file;
 mod error;
-mod hand_eye;
 mod lists;
 mod pictures;
 mod run;
+mod tracked;
 mod write;
 
 use std::path::{Path, PathBuf};
@@ -18,6 +18,7 @@ use crate::odometry::{RgbdCamera, RgbdFrame, TimedPose};
 
 pub use error::{FrameError, SequenceError, SequenceNote};
 pub use run::{FrameRecord, FrameSummary, Looked, SequenceRun, trajectory};
+pub use tracked::TrackedSequence;
 pub use write::{SequenceWriter, trajectory_text};
 
 /// The camera's file.

@@ -1,9 +1,8 @@
 //! The session of a recording: it names the folder of images and holds the truth.
 
-use serde_json::{Value, json};
+use serde_json::json;
 
-use crate::geometry::{Frame, Transform};
-use crate::session::{Robot, Session, Target};
+use crate::session::{Robot, Session, Target, Truth, UnknownFields};
 
 use super::path::written;
 use super::{Carrier, RoomRecording};
@@ -29,18 +28,18 @@ impl RoomRecording {
                 orientation_std_deg: known(options.orientation_std_deg),
                 ..Robot::default()
             };
-            let truth = json!({
-                "flange_from_sensor": pose(&arm.flange_from_sensor),
-                "base_from_world": pose(&written(&arm.world_from_base.inverse())),
-                "robot_clock_ahead_s": options.robot_clock_ahead_s,
+            let base_from_world = *written(&arm.world_from_base.inverse()).rigid();
+            session.truth = Some(Truth {
+                flange_from_sensor: arm.flange_from_sensor,
+                target_in_base_mm: base_from_world.translation.vector,
+                base_from_plate: None,
+                base_from_target: Some(base_from_world),
+                unknown: UnknownFields::from_iter([(
+                    "robot_clock_ahead_s".to_owned(),
+                    json!(options.robot_clock_ahead_s),
+                )]),
             });
-            session.unknown.insert("truth".to_owned(), truth);
         }
         session
     }
-}
-
-fn pose<Dst: Frame, Src: Frame>(pose: &Transform<Dst, Src>) -> Value {
-    let translation_mm: [f64; 3] = pose.translation_mm().into();
-    json!({ "translation_mm": translation_mm, "quaternion_wxyz": pose.quaternion_wxyz() })
 }

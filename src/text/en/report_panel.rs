@@ -42,8 +42,6 @@ pub const NO_PICTURE: &str = "The picture could not be drawn. Your session is un
 /// Notice.
 pub const COPIED_TEXT: &str = "Text copied";
 
-/// A sequence has no report.
-pub const NO_REPORT_OF_SEQUENCE: &str = "There is no printed report of a sequence. Its calibration can be had under Tool frame, its trajectory under Sequence.";
 /// What to do where there is nothing to report.
 pub const NOTHING_TO_REPORT: &str =
     "There is nothing to report yet. Add stations under Poses or Capture; the report then follows by itself.";

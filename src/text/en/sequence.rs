@@ -97,11 +97,6 @@ pub fn pixel_readout(column: usize, row: usize, distance_m: Option<Option<&str>>
     }
 }
 
-/// In place of tables of stations.
-pub const NO_TABLES: &str =
-    "A sequence has no stations to list: the calibration stands at the right, what it was found from under Sequence.";
-/// In place of findings.
-pub const NO_DIAGNOSIS: &str = "A sequence has no stations to diagnose. Frames that were not tracked say why under Sequence; warnings of the calibration stand at the right.";
 /// The step without a session.
 pub const NO_SESSION: &str = "Open a session with an RGB-D sequence, or the folder of one.";
 /// The lists are being read.
@@ -110,10 +105,6 @@ pub const OPENING: &str = "Reading the sequence …";
 pub const READING: &str = "Reading the frame …";
 /// No frame has a pose yet.
 pub const NO_WAY: &str = "No frame has been tracked yet.";
-/// A sequence is found beside its session's file.
-pub const NO_FILE_YET: &str =
-    "The sequence's folder is named relative to the session's file, which is not saved yet: save it beside the folder";
-
 /// Title of a card.
 pub const PICTURE: &str = "Frame";
 /// Title of a card.
@@ -240,10 +231,6 @@ pub fn summary(with_pose: usize, num_frames: usize, travel: Option<[f64; 2]>, er
     }
     parts.join(" · ")
 }
-
-/// Why a sequence gives no calibration.
-pub const NO_FLANGE: &str =
-    "The sequence has no flange.txt with the robot's poses: its motion is known, but not how the camera is mounted";
 
 /// A folder that cannot be called by its name.
 #[must_use]

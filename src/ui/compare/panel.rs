@@ -11,10 +11,9 @@ use crate::report::judgement::Judgement;
 use crate::session::Target;
 use crate::text::compare as text;
 use crate::text::methods::{method_description, method_short_name};
-use crate::text::sequence as sequence_words;
 use crate::ui::save_picture::saveable;
 use crate::ui::verdict::{self, NextStep};
-use crate::ui::{PanelContext, rail, theme, widgets};
+use crate::ui::{PanelContext, theme, widgets};
 
 use super::bars::{self, BarSource};
 use super::cards::{self, CardOptions};
@@ -117,16 +116,10 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut CompareStat
         let improvement = model.improvement.as_ref();
         let is_explained = &mut state.is_explained;
         verdict::show(ui, band.as_ref(), improvement, next.as_ref(), is_out_of_date, is_explained, context);
-        if rail::is_sequence(workbench) {
-            ui.label(theme::dim(ui, sequence_words::NO_TABLES));
-        }
         if let Some(motion) =
             solution_of(&results.methods, Method::Motion).and_then(|solution| solution.motion.as_ref())
         {
             closed_forms::show(ui, &motion.closed_forms);
-        }
-        if rail::is_sequence(workbench) {
-            return;
         }
         let width = ui.available_width();
         let shown = state.shown(&model, width);

@@ -12,7 +12,7 @@ use crate::report::document::{Document, Options, Section, SectionId};
 use crate::text::report_panel as words;
 use crate::ui::actions::Action;
 use crate::ui::widgets::{self, FromTop, name_field};
-use crate::ui::{PanelContext, rail, theme};
+use crate::ui::{PanelContext, theme};
 
 use super::page::Page;
 
@@ -121,9 +121,8 @@ impl PreviewState {
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut PreviewState, memory: &mut ReportMemory) {
     let workbench = context.workbench;
     let Some(document) = workbench.document() else { return };
-    if document.session.stations.is_empty() && document.session.further.is_empty() {
-        let is_sequence = rail::is_sequence(context.workbench);
-        widgets::nothing(ui, if is_sequence { words::NO_REPORT_OF_SEQUENCE } else { words::NOTHING_TO_REPORT });
+    if document.session.is_empty() {
+        widgets::nothing(ui, words::NOTHING_TO_REPORT);
         return;
     }
     let report = workbench.report();

@@ -2,11 +2,11 @@
 
 use egui::{Align, ComboBox, DragValue, Label, Layout, Role, Ui, WidgetInfo, vec2};
 
-use crate::app::workbench::sequence::{SequenceBench, SequenceCommand, TrackOptions, Tracked};
+use crate::app::workbench::sequence::{SequenceBench, SequenceCommand, TrackOptions};
 use crate::app::{Command, Workbench};
 use crate::odometry::{Estimator, Tracking};
 use crate::report::odometry_file::frames_csv;
-use crate::session::sequence::{Sequence, trajectory, trajectory_text};
+use crate::session::sequence::{Sequence, TrackedSequence, trajectory, trajectory_text};
 use crate::text::odometry::{failure_message, tracking_word};
 use crate::text::sequence as words;
 use crate::ui::file_dialog::Purpose;
@@ -148,7 +148,7 @@ fn summary(ui: &mut Ui, workbench: &Workbench, sequence: &Sequence) {
 }
 
 /// The files that can be had of it.
-fn files(ui: &mut Ui, tracked: &Tracked) {
+fn files(ui: &mut Ui, tracked: &TrackedSequence) {
     ui.menu_button(words::SAVE, |ui| {
         let save = |ui: &mut Ui, label: &str, name: &str, contents: &dyn Fn() -> String| {
             if ui.button(label).clicked() {

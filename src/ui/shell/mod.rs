@@ -14,7 +14,6 @@ use crate::app::cell::CellCommand;
 use crate::app::jobs::{JobOutcome, Slot, Wake};
 use crate::app::{Command, NoticeKind, OnDisk, Workbench};
 use crate::text::report_panel as report_words;
-use crate::text::sequence as sequence_words;
 use crate::text::shell as words;
 
 use self::live_cell::CellWatch;
@@ -358,9 +357,6 @@ impl Shell {
                 }
                 Step::Arcs => arcs::show(ui, &mut context, &mut self.arcs),
                 Step::Compare => compare::show(ui, &mut context, &mut self.compare),
-                Step::Diagnosis if rail::is_sequence(context.workbench) => {
-                    widgets::nothing(ui, sequence_words::NO_DIAGNOSIS);
-                }
                 Step::Diagnosis => diagnosis::show(ui, &mut context, &mut self.diagnosis),
                 Step::Verify => verify::show(ui, &mut context, &mut self.verify),
                 Step::Report => report::show(ui, &mut context, &mut self.report, &mut self.persisted.report),

@@ -36,7 +36,9 @@ pub(super) fn figures(verification: &Verification) -> Vec<Figure> {
         let suffix = if verification.targets.len() > 1 { format!("-{number}") } else { String::new() };
         let found = match target.problem {
             Problem::Plate(_) => distances(target, &looks, &suffix),
-            Problem::Ball(_) | Problem::Point(_) | Problem::Motion(_) => stability(target, &looks, &suffix),
+            Problem::Ball(_) | Problem::Point(_) | Problem::Motion(_) | Problem::Streams(_) => {
+                stability(target, &looks, &suffix)
+            }
         };
         figures.extend(found);
     }

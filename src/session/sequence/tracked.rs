@@ -1,14 +1,17 @@
-//! Where the camera sits on a robot, from its own motion against the flange's: no target is needed.
+//! A sequence that was gone through to its end: the camera's own motion, and beside it that of the robot, from which follows
+//! where the camera sits on it. No target is needed.
+
+use std::sync::Arc;
 
 use nalgebra::Matrix6;
 
-use crate::calibrate::motion::{CameraPose, StreamProblem, Weighing, solve_streams};
-use crate::calibrate::{Method, MethodResult};
+use crate::calibrate::motion::{CameraPose, StreamProblem, Weighing};
 use crate::geometry::se3;
-use crate::odometry::Tracking;
+use crate::odometry::{Evaluation, OdometryOptions, Tracking};
+use crate::watch::{Cancelled, Watch};
 
 use super::super::Session;
-use super::{FrameRecord, Sequence};
+use super::{FrameRecord, Sequence, SequenceRun};
 
 /// Poses nearer in time are passed over, s: the steps of neighbouring frames share the errors of their keyframe, so that many
 /// of them would seem to know more than they do; and over a short step a robot turns hardly more than its noise.
@@ -18,17 +21,49 @@ const FEW_POSES: usize = 12;
 /// Over a gap nothing is known of the motion, rad² and mm².
 const UNKNOWN: f64 = 1e9;
 
-impl Sequence {
-    /// The hand-eye calibration, where the robot's poses are known; the session says what the robot is like and where the
-    /// camera is mounted.
+/// A sequence with what is known of each of its frames.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrackedSequence {
+    /// The sequence.
+    pub sequence: Arc<Sequence>,
+    /// One entry a frame.
+    pub records: Vec<FrameRecord>,
+    /// How far the trajectory is off the true one, where that is known.
+    pub evaluation: Option<Evaluation>,
+}
+
+impl TrackedSequence {
+    /// What a run has found.
     #[must_use]
-    pub fn hand_eye(&self, records: &[FrameRecord], session: &Session) -> Option<MethodResult> {
-        let flange = self.flange.as_ref()?;
-        let mut camera = camera_poses(records, SPACING_S);
-        if camera.len() < FEW_POSES {
-            camera = camera_poses(records, 0.0);
+    pub fn of(sequence: Arc<Sequence>, run: &SequenceRun) -> Self {
+        let evaluation = sequence.evaluate(&run.trajectory());
+        Self { sequence, records: run.records().to_vec(), evaluation }
+    }
+
+    /// Goes through a sequence.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `watch` says so between two frames.
+    pub fn track(sequence: Arc<Sequence>, options: OdometryOptions, watch: &mut dyn Watch) -> Result<Self, Cancelled> {
+        let mut run = SequenceRun::new(&sequence, options);
+        loop {
+            watch.report(run.records().len(), sequence.frames.len())?;
+            if run.step(&sequence).is_none() {
+                return Ok(Self::of(sequence, &run));
+            }
         }
-        let problem = StreamProblem {
+    }
+
+    /// The hand-eye problem, where the robot's poses are known; the session says what the robot is like and where the camera is
+    /// mounted.
+    #[must_use]
+    pub fn streams(&self, session: &Session) -> Option<StreamProblem> {
+        let flange = self.sequence.flange.as_ref()?;
+        let mut camera = camera_poses(&self.records, SPACING_S);
+        if camera.len() < FEW_POSES {
+            camera = camera_poses(&self.records, 0.0);
+        }
+        Some(StreamProblem {
             mount: session.mount,
             noise: session.robot.noise(),
             reference_distance_mm: session.sensor.reference_distance_mm,
@@ -36,8 +71,7 @@ impl Sequence {
             camera,
             weighing: Weighing::Drifting,
             find_offset: true,
-        };
-        Some(MethodResult { method: Method::Motion, outcome: solve_streams(&problem) })
+        })
     }
 }
 
