@@ -61,20 +61,12 @@ fn tracked(args: &OdometryArgs) -> Result<String, Refusal> {
     let options = OdometryOptions { estimator, period_s: args.every, ..OdometryOptions::default() };
     let tracked = watched("tracking frames", |watch| TrackedSequence::track(Arc::new(sequence), options, watch))
         .map_err(|reason| (EXIT_NOTHING_COMPUTED, reason))?;
-    let TrackedSequence { sequence, records, evaluation } = &tracked;
-    let trajectory = trajectory(records);
+    let trajectory = trajectory(&tracked.records);
     let hand_eye = tracked
         .streams(&session)
         .map(|streams| MethodResult { method: Method::Motion, outcome: solve_streams(&streams) });
-    let result = OdometryResult {
-        name: &name,
-        estimator,
-        records,
-        notes: &sequence.notes,
-        evaluation: *evaluation,
-        session: &session,
-        hand_eye: hand_eye.as_ref(),
-    };
+    let result =
+        OdometryResult { name: &name, estimator, tracked: &tracked, session: &session, hand_eye: hand_eye.as_ref() };
     if trajectory.is_empty() {
         let reason = result.troubles().next().map_or_else(String::new, |(_, _, reason)| reason);
         return Err((EXIT_NOTHING_COMPUTED, words::nothing_tracked(&name, &reason)));
@@ -86,7 +78,7 @@ fn tracked(args: &OdometryArgs) -> Result<String, Refusal> {
             folder,
             &[
                 ("trajectory.txt", &trajectory_text(poses)),
-                ("frames.csv", &frames_csv(records)),
+                ("frames.csv", &frames_csv(&tracked.records)),
                 ("odometry.json", &file),
             ],
         )?;
@@ -94,7 +86,7 @@ fn tracked(args: &OdometryArgs) -> Result<String, Refusal> {
     if args.json {
         return Ok(file);
     }
-    let mut text = report(sequence, &result);
+    let mut text = report(&result);
     if let Some(folder) = &args.out {
         text.push_str(&words::wrote_odometry(&folder.display().to_string()));
     }
@@ -130,36 +122,30 @@ fn write_files(folder: &Path, files: &[(&str, &str)]) -> Result<(), Refusal> {
 }
 
 /// Writing to a string does not fail, hence the `ok()`s.
-fn report(sequence: &Sequence, result: &OdometryResult<'_>) -> String {
+fn report(result: &OdometryResult<'_>) -> String {
     const MOST_TROUBLES: usize = 10;
+    let TrackedSequence { sequence, records, evaluation } = result.tracked;
     let color = &sequence.camera.color;
-    let mut out =
-        words::odometry_head(result.name, result.records.len(), [color.width, color.height], result.estimator);
-    for note in result.notes {
+    let mut out = words::odometry_head(result.name, records.len(), [color.width, color.height], result.estimator);
+    for note in &sequence.notes {
         writeln!(out, "note: {note}").ok();
     }
-    let counts = result.counts();
+    let counts = result.tracked.counts();
     writeln!(out, "{}", words::tracked_line(counts.tracked, counts.lost, counts.left_out, counts.unreadable)).ok();
-    writeln!(out, "{}", words::travel_line(&result.travel())).ok();
+    writeln!(out, "{}", words::travel_line(&result.tracked.travel())).ok();
     let [motion_ms, decode_ms] = result.medians_ms();
     writeln!(out, "{}", words::speed_line(motion_ms, decode_ms)).ok();
-    if let Some(evaluation) = result.evaluation {
-        let line = words::evaluation_line(
-            evaluation.num_poses,
-            evaluation.ate_rmse_mm,
-            evaluation.rpe_translation_rmse_mm,
-            evaluation.rpe_rotation_rmse_rad.to_degrees(),
-        );
-        writeln!(out, "{line}").ok();
+    if let Some(evaluation) = evaluation {
+        writeln!(out, "against the ground truth, {}", words::evaluation_line(evaluation)).ok();
     }
     hand_eye(&mut out, result);
     out.push('\n');
-    frames_table(&mut out, result.records);
+    frames_table(&mut out, records);
     let troubles: Vec<_> = result.troubles().collect();
     if !troubles.is_empty() {
         writeln!(out, "\n{}", words::trouble_head(troubles.len())).ok();
         for (number, _, reason) in troubles.iter().take(MOST_TROUBLES) {
-            writeln!(out, "  {number} ({:.3} s): {reason}", result.records[*number].time_s).ok();
+            writeln!(out, "  {number} ({:.3} s): {reason}", records[*number].time_s).ok();
         }
         if troubles.len() > MOST_TROUBLES {
             writeln!(out, "  {}", words::trouble_more(troubles.len() - MOST_TROUBLES)).ok();

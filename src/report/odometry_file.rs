@@ -5,9 +5,9 @@ use serde_json::{Value, json};
 
 use crate::calibrate::MethodResult;
 use crate::geometry::stats;
-use crate::odometry::{Estimator, Evaluation, Motion, Tracking, Travel};
+use crate::odometry::{Estimator, Motion, Tracking};
 use crate::session::Session;
-use crate::session::sequence::{FrameRecord, SequenceNote};
+use crate::session::sequence::{FrameRecord, TrackedSequence};
 use crate::text::odometry::{failure_message, tracking_word};
 
 use super::result_file::method_entry;
@@ -24,60 +24,21 @@ pub struct OdometryResult<'a> {
     pub name: &'a str,
     /// How the motion was estimated.
     pub estimator: Estimator,
-    /// Every frame.
-    pub records: &'a [FrameRecord],
-    /// What is odd about the lists.
-    pub notes: &'a [SequenceNote],
-    /// How far the trajectory is off, where the truth is known.
-    pub evaluation: Option<Evaluation>,
+    /// The sequence with every frame.
+    pub tracked: &'a TrackedSequence,
     /// The session that names the sequence, or an empty one: where the camera is mounted, and on what.
     pub session: &'a Session,
     /// The hand-eye calibration, where the robot's poses are known.
     pub hand_eye: Option<&'a MethodResult>,
 }
 
-/// Frames by what became of them.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct FrameCounts {
-    /// With a pose.
-    pub tracked: usize,
-    /// Without, as nothing could be followed.
-    pub lost: usize,
-    /// Left out by the period.
-    pub left_out: usize,
-    /// Without pictures.
-    pub unreadable: usize,
-}
-
 impl OdometryResult<'_> {
-    /// How many frames became what.
-    #[must_use]
-    pub fn counts(&self) -> FrameCounts {
-        let mut counts = FrameCounts::default();
-        for record in self.records {
-            let count = match record.outcome.as_ref().map(|summary| &summary.tracking) {
-                Ok(Tracking::Started { .. } | Tracking::Tracked(_)) => &mut counts.tracked,
-                Ok(Tracking::Lost(_)) => &mut counts.lost,
-                Ok(Tracking::LeftOut) => &mut counts.left_out,
-                Err(_) => &mut counts.unreadable,
-            };
-            *count += 1;
-        }
-        counts
-    }
-
-    /// How far the camera has come in the end.
-    #[must_use]
-    pub fn travel(&self) -> Travel {
-        let last = self.records.iter().rev().find_map(|record| record.outcome.as_ref().ok());
-        last.map_or_else(Travel::default, |summary| summary.travel)
-    }
-
     /// Medians over the frames that were used: time for the motion, and for reading and decoding, ms; NaN of no frame.
     #[must_use]
     pub fn medians_ms(&self) -> [f64; 2] {
         let used = || {
-            self.records
+            self.tracked
+                .records
                 .iter()
                 .filter(|record| record.outcome.as_ref().is_ok_and(|summary| summary.tracking != Tracking::LeftOut))
         };
@@ -88,7 +49,7 @@ impl OdometryResult<'_> {
 
     /// Frames without a motion that should have one: their numbers, a word for files, and why.
     pub fn troubles(&self) -> impl Iterator<Item = (usize, &'static str, String)> {
-        self.records.iter().enumerate().filter_map(|(number, record)| match &record.outcome {
+        self.tracked.records.iter().enumerate().filter_map(|(number, record)| match &record.outcome {
             Err(error) => Some((number, "no-picture", error.to_string())),
             Ok(summary) => match &summary.tracking {
                 Tracking::Lost(failure) => Some((number, failure.code(), failure_message(failure))),
@@ -103,24 +64,29 @@ impl OdometryResult<'_> {
             let tracking = record.outcome.as_ref().map(|summary| &summary.tracking);
             matches!(tracking, Ok(Tracking::Started { is_after_gap: true }))
         };
-        self.records.iter().enumerate().filter_map(|(number, record)| is_gap(record).then_some(number)).collect()
+        self.tracked
+            .records
+            .iter()
+            .enumerate()
+            .filter_map(|(number, record)| is_gap(record).then_some(number))
+            .collect()
     }
 }
 
 /// The file.
 #[must_use]
 pub fn odometry_file(result: &OdometryResult<'_>) -> Value {
-    let counts = result.counts();
-    let travel = result.travel();
+    let counts = result.tracked.counts();
+    let travel = result.tracked.travel();
     let [motion_ms, decode_ms] = result.medians_ms();
-    let evaluation = result.evaluation;
-    let trajectory: Vec<[f64; 8]> = result.records.iter().filter_map(trajectory_row).collect();
+    let evaluation = result.tracked.evaluation;
+    let trajectory: Vec<[f64; 8]> = result.tracked.records.iter().filter_map(trajectory_row).collect();
     let mut file = json!({
         "format": FORMAT,
         "version": VERSION,
         "sequence": result.name,
         "estimator": result.estimator.id(),
-        "frames": result.records.len(),
+        "frames": result.tracked.records.len(),
         "tracked": counts.tracked,
         "lost": counts.lost,
         "left_out": counts.left_out,
@@ -137,11 +103,11 @@ pub fn odometry_file(result: &OdometryResult<'_>) -> Value {
         "gaps_before": result.gaps(),
         "problems": result.troubles().map(|(number, code, message)| json!({
             "frame": number,
-            "time_s": result.records[number].time_s,
+            "time_s": result.tracked.records[number].time_s,
             "code": code,
             "message": message,
         })).collect::<Vec<_>>(),
-        "notes": result.notes.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        "notes": result.tracked.sequence.notes.iter().map(ToString::to_string).collect::<Vec<_>>(),
         "trajectory": trajectory,
     });
     if let Some(hand_eye) = result.hand_eye {

@@ -6,8 +6,7 @@ use crate::app::{CellView, Results, Workbench};
 use crate::calibrate::Verdict;
 use crate::device::LinkState;
 use crate::diagnose::{Severity, verdict_with};
-use crate::odometry::Tracking;
-use crate::session::sequence::FrameRecord;
+use crate::session::sequence::TrackedSequence;
 use crate::session::{Session, Target};
 use crate::text::capture as capture_words;
 use crate::text::methods::verdict_mark;
@@ -207,10 +206,7 @@ fn has_nothing(session: &Session) -> bool {
 
 /// Frames of a sequence that were to be tracked and have no pose.
 fn num_untracked(results: &Results) -> usize {
-    let is_untracked = |record: &&FrameRecord| {
-        record.outcome.as_ref().map_or(true, |summary| matches!(summary.tracking, Tracking::Lost(_)))
-    };
-    results.measured.sequence().map_or(0, |tracked| tracked.records.iter().filter(is_untracked).count())
+    results.measured.sequence().map(TrackedSequence::counts).map_or(0, |counts| counts.lost + counts.unreadable)
 }
 
 fn mark(workbench: &Workbench, selection: &Selection, num_pose_remarks: usize, step: Step) -> Mark {

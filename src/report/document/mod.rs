@@ -56,7 +56,10 @@ pub fn document(evidence: &Evidence, inputs: &[InputFile], options: &Options) ->
     let blocks = |id: SectionId| match id {
         SectionId::Verdict => sections::verdict::blocks(evidence),
         SectionId::Calibration => sections::calibration::blocks(evidence),
-        SectionId::Setup => sections::setup::blocks(evidence, options),
+        SectionId::Setup => {
+            let sequences = evidence.targets.iter().flat_map(sections::sequence::blocks);
+            sections::setup::blocks(evidence, options).into_iter().chain(sequences).collect()
+        }
         SectionId::Methods => sections::methods::blocks(evidence),
         SectionId::Figures => figures_of(evidence).into_iter().map(Block::Figure).collect(),
         SectionId::Diagnosis => sections::diagnosis::blocks(evidence),

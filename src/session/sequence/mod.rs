@@ -18,7 +18,7 @@ use crate::odometry::{RgbdCamera, RgbdFrame, TimedPose};
 
 pub use error::{FrameError, SequenceError, SequenceNote};
 pub use run::{FrameRecord, FrameSummary, Looked, SequenceRun, trajectory};
-pub use tracked::TrackedSequence;
+pub use tracked::{FrameCounts, TrackedSequence};
 pub use write::{SequenceWriter, trajectory_text};
 
 /// The camera's file.

@@ -7,7 +7,7 @@ use nalgebra::Matrix6;
 
 use crate::calibrate::motion::{CameraPose, StreamProblem, Weighing};
 use crate::geometry::se3;
-use crate::odometry::{Evaluation, OdometryOptions, Tracking};
+use crate::odometry::{Evaluation, OdometryOptions, Tracking, Travel};
 use crate::watch::{Cancelled, Watch};
 
 use super::super::Session;
@@ -32,6 +32,19 @@ pub struct TrackedSequence {
     pub evaluation: Option<Evaluation>,
 }
 
+/// Frames by what became of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FrameCounts {
+    /// With a pose.
+    pub tracked: usize,
+    /// Without, as nothing could be followed.
+    pub lost: usize,
+    /// Left out by the period.
+    pub left_out: usize,
+    /// Without pictures.
+    pub unreadable: usize,
+}
+
 impl TrackedSequence {
     /// What a run has found.
     #[must_use]
@@ -52,6 +65,29 @@ impl TrackedSequence {
                 return Ok(Self::of(sequence, &run));
             }
         }
+    }
+
+    /// How many frames became what.
+    #[must_use]
+    pub fn counts(&self) -> FrameCounts {
+        let mut counts = FrameCounts::default();
+        for record in &self.records {
+            let count = match record.outcome.as_ref().map(|summary| &summary.tracking) {
+                Ok(Tracking::Started { .. } | Tracking::Tracked(_)) => &mut counts.tracked,
+                Ok(Tracking::Lost(_)) => &mut counts.lost,
+                Ok(Tracking::LeftOut) => &mut counts.left_out,
+                Err(_) => &mut counts.unreadable,
+            };
+            *count += 1;
+        }
+        counts
+    }
+
+    /// How far the camera has come in the end.
+    #[must_use]
+    pub fn travel(&self) -> Travel {
+        let last = self.records.iter().rev().find_map(|record| record.outcome.as_ref().ok());
+        last.map_or_else(Travel::default, |summary| summary.travel)
     }
 
     /// The hand-eye problem, where the robot's poses are known; the session says what the robot is like and where the camera is

@@ -285,6 +285,44 @@ pub fn setup_title(target: &str, num_stations: usize, is_fixed: bool) -> String 
     }
 }
 
+/// Legend of a camera's way.
+pub const FROM_IMAGES: &str = "from the images";
+/// Legend of the way that is known.
+pub const TRUE_WAY: &str = "truth";
+/// Legend of where a way begins.
+pub const FIRST_FRAME: &str = "first frame";
+/// Legend of points.
+pub const POINTS_MATCHED: &str = "points seen again";
+/// Legend of points.
+pub const POINTS_AGREEING: &str = "points that agree with the motion";
+/// Axis title.
+pub const RIGHT_AXIS: &str = "right / m";
+/// Axis title.
+pub const FORWARD_AXIS: &str = "forward / m";
+/// Axis title.
+pub const UP_AXIS: &str = "up / m";
+/// Axis title.
+pub const TIME_AXIS: &str = "time / s";
+/// Axis title.
+pub const DISTANCE_AXIS: &str = "way / m";
+/// Axis title.
+pub const HEADING_AXIS: &str = "turn / °";
+/// Axis title.
+pub const POINTS_AXIS: &str = "points";
+/// Caption.
+pub const CAMERA_WAY: &str =
+    "The camera's way, as seen from its first frame: from above and from the side, equally long in all directions";
+
+/// Caption; `has_gaps` where some frames have no motion.
+#[must_use]
+pub const fn motion_over_time(has_gaps: bool) -> &'static str {
+    if has_gaps {
+        "Way, turn to the right, and the points that the motion rests on; shaded where no motion was found"
+    } else {
+        "Way, turn to the right, and the points that the motion rests on"
+    }
+}
+
 /// Legend of first captures.
 pub const FIRST_CAPTURE: &str = "first capture of a station";
 /// Legend of the way between stations.

@@ -1,6 +1,6 @@
 //! The words of the odometry: of a frame, of why one was lost, of the command.
 
-use crate::odometry::{Estimator, Failure, Tracking, Travel};
+use crate::odometry::{Estimator, Evaluation, Failure, Tracking, Travel};
 
 use super::plural;
 
@@ -97,11 +97,11 @@ pub fn speed_line(motion_ms: f64, decode_ms: f64) -> String {
 
 /// Against the ground truth.
 #[must_use]
-pub fn evaluation_line(num_poses: usize, ate_mm: f64, rpe_mm: f64, rpe_deg: f64) -> String {
+pub fn evaluation_line(evaluation: &Evaluation) -> String {
+    let Evaluation { num_poses, ate_rmse_mm: ate_mm, rpe_translation_rmse_mm: rpe_mm, .. } = *evaluation;
+    let rpe_deg = evaluation.rpe_rotation_rmse_rad.to_degrees();
     let ate = if ate_mm.is_nan() { "not defined on a straight line".to_owned() } else { format!("{ate_mm:.2} mm") };
-    format!(
-        "against the ground truth, {num_poses} poses, RMS: ATE {ate}; RPE from frame to frame {rpe_mm:.3} mm, {rpe_deg:.4}°"
-    )
+    format!("{num_poses} poses, RMS: ATE {ate}; RPE from frame to frame {rpe_mm:.3} mm, {rpe_deg:.4}°")
 }
 
 /// Heads the hand-eye calibration.

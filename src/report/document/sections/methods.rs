@@ -1,5 +1,6 @@
 //! The methods side by side: their errors, their differences, and a table each in the layout of the paper's.
 
+use crate::calibrate::motion::ClosedFormAnswer;
 use crate::calibrate::{MethodResult, Solution};
 use crate::report::compare::{distance_from_truth, maximum_error_mm};
 use crate::report::comparison::{Comparison, DifferenceRow};
@@ -9,7 +10,7 @@ use crate::session::Target;
 use crate::text::compare::pair;
 use crate::text::digits::decimals_for;
 use crate::text::report as words;
-use crate::text::{method_name, method_short_name};
+use crate::text::{closed_form_name, method_name, method_short_name};
 
 use super::{of_each_target, paper_table};
 
@@ -33,6 +34,8 @@ fn of_target(target: &TargetEvidence, suffix: &str) -> Vec<Block> {
             blocks.push(Block::Table(paper_table::of_method(column.method, table, suffix)));
         }
     }
+    let motion = target.best().and_then(|best| best.motion.as_ref());
+    blocks.extend(motion.map(|motion| Block::Table(closed_forms(&motion.closed_forms, suffix))));
     blocks.extend(comparison.published.as_ref().map(|published| Block::Table(paper_table::published(published))));
     blocks
 }
@@ -118,5 +121,32 @@ fn differences(rows: &[DifferenceRow], suffix: &str) -> Table {
             .collect(),
         rows: rows.iter().map(row).collect(),
         note: Some(words::DIFFERENCES_NOTE.to_owned()),
+    }
+}
+
+/// What the published closed forms make of the same motions.
+fn closed_forms(answers: &[ClosedFormAnswer], suffix: &str) -> Table {
+    let row = |answered: &ClosedFormAnswer| {
+        let answer = answered.answer.as_ref();
+        vec![
+            Cell::words(closed_form_name(answered.form)),
+            Cell::maybe(answer.map(|answer| answer.off_mm), ERROR_DECIMALS),
+            Cell::maybe(answer.map(|answer| answer.off_rad.to_degrees()), 4),
+            Cell::maybe(answer.map(|answer| answer.residual_mm), ERROR_DECIMALS),
+            Cell::maybe(answer.map(|answer| answer.residual_rad.to_degrees()), 4),
+        ]
+    };
+    Table {
+        id: format!("closed-forms{suffix}"),
+        title: words::CLOSED_FORMS.to_owned(),
+        columns: vec![
+            Column::words(words::CLOSED_FORM, "closed_form"),
+            Column::number(words::TRANSLATION, Some("mm"), "off_mm").under(words::FROM_REFINED),
+            Column::number(words::ROTATION, Some("°"), "off_deg").under(words::FROM_REFINED),
+            Column::number(words::TRANSLATION, Some("mm"), "residual_mm").under(words::LEFT_OVER),
+            Column::number(words::ROTATION, Some("°"), "residual_deg").under(words::LEFT_OVER),
+        ],
+        rows: answers.iter().map(row).collect(),
+        note: Some(words::CLOSED_FORMS_NOTE.to_owned()),
     }
 }

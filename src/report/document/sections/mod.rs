@@ -6,6 +6,7 @@ pub(super) mod diagnosis;
 pub(super) mod methods;
 mod paper_table;
 mod parts;
+pub(super) mod sequence;
 pub(super) mod setup;
 pub(super) mod stations;
 pub(super) mod tool_frames;

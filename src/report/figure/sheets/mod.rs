@@ -6,6 +6,7 @@ mod findings;
 mod methods;
 mod other_data;
 mod reliance;
+mod sequence;
 mod setup;
 mod sheet;
 mod space;
@@ -23,7 +24,7 @@ pub fn figures_of(evidence: &Evidence) -> Vec<Figure> {
     let mut figures = setup::figures(evidence);
     let has_several = evidence.targets.len() > 1;
     for (target, number) in evidence.targets.iter().zip(1..) {
-        let makers = [arcs::figures, methods::figures, reliance::figures, findings::figures];
+        let makers = [sequence::figures, arcs::figures, methods::figures, reliance::figures, findings::figures];
         let of_target = makers.into_iter().flat_map(|make| make(target));
         figures.extend(of_target.map(|mut figure| {
             if has_several {

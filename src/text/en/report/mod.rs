@@ -234,6 +234,16 @@ pub const SENSOR_NOISE: &str = "Noise of a profile point, stated";
 /// Name of a fact.
 pub const REFERENCE_DISTANCE: &str = "Accuracy stated at";
 /// Name of a fact.
+pub const FRAMES: &str = "Frames";
+/// Name of a fact.
+pub const PICTURE_SIZE: &str = "Pictures";
+/// Name of a fact.
+pub const CAMERA_TRAVEL: &str = "Camera's way";
+/// Name of a fact.
+pub const AGAINST_TRUTH: &str = "Against the true way";
+/// Name of a fact.
+pub const CLOCKS: &str = "Clocks";
+/// Name of a fact.
 pub const MOUNT: &str = "Sensor mounted";
 /// Name of a fact.
 pub const TARGET_FACT: &str = "Target";
@@ -363,7 +373,7 @@ pub const fn references(target: &Target) -> &'static [&'static str] {
             "The bundle of both edges and the uncertainty are Handeye's own: docs/plate.md, docs/uncertainty.md.",
         ],
         Target::Pose { .. } => &[
-            "Closed forms: Tsai & Lenz 1989; Park & Martin 1994; Horaud & Dornaika 1995; Daniilidis 1999; Andreff, Horaud & Espiau 2001; Li, Wang & Wu 2010; Shah 2013.",
+            CLOSED_FORM_PAPERS,
             "The refined answer and its uncertainty are Handeye's own: docs/motion.md, docs/uncertainty.md.",
         ],
         Target::Point => &[
@@ -373,9 +383,15 @@ pub const fn references(target: &Target) -> &'static [&'static str] {
         Target::Workpiece => {
             &[CHEN, "How planes, teeth and diameters are measured is Handeye's own: docs/workpiece.md."]
         }
-        Target::Rgbd { .. } => &[],
+        Target::Rgbd { .. } => &[
+            "Visual odometry method based on an RGB-D camera, patent application CN 102692236 A, 2012.",
+            CLOSED_FORM_PAPERS,
+            "The tracking of the images, the refined answer and its uncertainty are Handeye's own: docs/odometry.md, docs/motion.md, docs/uncertainty.md.",
+        ],
     }
 }
+
+const CLOSED_FORM_PAPERS: &str = "Closed forms: Tsai & Lenz 1989; Park & Martin 1994; Horaud & Dornaika 1995; Daniilidis 1999; Andreff, Horaud & Espiau 2001; Li, Wang & Wu 2010; Shah 2013.";
 
 const LIN_MU: &str = "Lin Yuying, Mu Ping'an: “An improved hand-eye calibration method for robot based on standard ball”, Software Guide 18(5), 2019, doi 10.11907/rjdk.182468.";
 const CHEN: &str = "Chen Xinyu, Zhou Jie, Zhang Qingxin, Ren Yan: “Hand-eye calibration of robot with linear structured light under orthogonal constraints”, Laser & Infrared 53(5), 2023, doi 10.3969/j.issn.1001-5078.2023.05.015.";

@@ -48,7 +48,10 @@ pub const fn errors_legend(target: &Target) -> [&'static str; 2] {
         Target::Pose { .. } => {
             "max: largest coordinate relative to the first station · RMS: scatter of the target's origin about its place, 3D"
         }
-        Target::Ball { .. } | Target::Workpiece | Target::Rgbd { .. } => {
+        Target::Rgbd { .. } => {
+            "max: largest coordinate relative to the first stretch · RMS: scatter of where the stretches of the way put the scene, 3D"
+        }
+        Target::Ball { .. } | Target::Workpiece => {
             "max: largest coordinate (one axis) off the first station's ball, in sample, as in the papers · RMS: of the distances (3D) of all balls from their mean, in sample"
         }
     };
@@ -61,6 +64,19 @@ pub fn not_computed(method: Method, reason: &str) -> String {
     format!("{}: not computed. {reason}", method_name(method))
 }
 
+/// Title of a table.
+pub const CLOSED_FORMS: &str = "Published closed forms on the same motions";
+/// Head of a column.
+pub const CLOSED_FORM: &str = "closed form";
+/// Head over columns.
+pub const FROM_REFINED: &str = "off the refined answer";
+/// Head over columns.
+pub const LEFT_OVER: &str = "residual, RMS";
+/// Head of a column.
+pub const TRANSLATION: &str = "translation";
+/// Below the table.
+pub const CLOSED_FORMS_NOTE: &str =
+    "The refined answer begins at the best of them. Residual: of the target's place and orientation about their means.";
 /// Title of a table.
 pub const DIFFERENCES: &str = "Differences of the calibrations, second relative to first";
 /// Head of a column.
