@@ -91,6 +91,7 @@ pub const NOT_USED: &str = "not used by this method";
 pub const fn error_per_station(target: &Target) -> &'static str {
     match target {
         Target::RightAnglePlate => "Off edge per point",
+        Target::Rgbd { .. } => "Error per stretch of the way",
         _ => "Error per station",
     }
 }
@@ -115,6 +116,7 @@ pub const fn scatter_title(target: &Target) -> &'static str {
         Target::RightAnglePlate => "Points about their edges, 1σ",
         Target::Point => "Tips, 1σ",
         Target::Pose { .. } => "Origins of the target, 1σ",
+        Target::Rgbd { .. } => "Where each stretch puts the scene, 1σ",
         _ => "Ball centres, 1σ",
     }
 }

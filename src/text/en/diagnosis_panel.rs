@@ -49,7 +49,13 @@ pub const fn checked(target: &Target) -> &'static [&'static str] {
             "target: whether its size is as stated",
             "residuals: two halves that agree, a normal distribution",
         ],
-        Target::Ball { .. } | Target::Workpiece | Target::Rgbd { .. } => &[
+        Target::Rgbd { .. } => &[
+            "motion: a list that is inverted, steps in which the camera lost its way",
+            "rotations: enough of them, and about more than one axis",
+            "clocks: whether the data tell by how much they differ",
+            "stretches: each against the calibration made without it, two halves that agree",
+        ],
+        Target::Ball { .. } | Target::Workpiece => &[
             "poses: convention, order, inverse, units, twins",
             "stations: wrong, stale or mixed-up poses, wrong sides",
             "rotations: enough of them, and about more than one axis",
@@ -130,6 +136,7 @@ pub fn same_as(names: &str) -> String {
 pub const fn stations_agree(target: &Target) -> &'static str {
     match target {
         Target::RightAnglePlate => "Each point off its edge by the others",
+        Target::Rgbd { .. } => "Each stretch against the others",
         _ => "Each station against the others",
     }
 }

@@ -95,6 +95,7 @@ pub fn of_target(title: &str, target: &str) -> String {
 pub const fn left_out(target: &Target) -> &'static str {
     match target {
         Target::RightAnglePlate => "Left out: distance from the edge found without the station",
+        Target::Rgbd { .. } => "Left out: what the steps of a stretch are off by with the calibration made without it",
         _ => "Left out: distance (3D) from what the calibration made without the station predicts",
     }
 }
@@ -104,6 +105,7 @@ pub const fn left_out(target: &Target) -> &'static str {
 pub const fn in_sample(target: &Target) -> &'static str {
     match target {
         Target::RightAnglePlate => "In sample: distance from the edge",
+        Target::Rgbd { .. } => "In sample: distance (3D) of where a stretch puts the scene from the mean",
         _ => "In sample: distance (3D) from the mean of all stations",
     }
 }
@@ -113,6 +115,7 @@ pub const fn in_sample(target: &Target) -> &'static str {
 pub const fn errors_title(target: &Target) -> &'static str {
     match target {
         Target::RightAnglePlate => "Errors of all points by all methods",
+        Target::Rgbd { .. } => "Errors of all stretches of the way",
         _ => "Errors of all stations by all methods",
     }
 }
@@ -133,6 +136,9 @@ pub const fn scatter_title(target: &Target) -> &'static str {
         }
         Target::Pose { .. } => {
             "The target's origin as each station finds it, about the mean, with 1σ ellipses, in the base"
+        }
+        Target::Rgbd { .. } => {
+            "The scene as each stretch of the way has it, about the mean, with 1σ ellipses, in the base"
         }
         Target::Point => "The tip as each station finds it, about the mean, with 1σ ellipses, in the base",
         _ => "The ball's centre as each station finds it, about the mean, with 1σ ellipses, in the base",
