@@ -29,7 +29,9 @@ pub mod warning;
 pub use error::SolveError;
 pub use joint::{JointSolution, JointTarget, solve_joint};
 pub use method::{Method, MethodResult, best_available, solution_of, solve, solve_all};
-pub use motion::{ClosedForm, ClosedFormAnswer, MotionFound, MotionPose, MotionReduced, RejectedPose};
+pub use motion::{
+    ClosedForm, ClosedFormAnswer, MotionData, MotionFound, MotionPose, MotionReduced, RejectedPose, TrackReduced,
+};
 pub use plate::PlateReduced;
 pub use problem::{
     BallProblem, Capture, Edge, MotionProblem, Mount, Noise, PlateProblem, PlateStation, Problem, Reading, Side,

@@ -93,6 +93,21 @@ pub(crate) fn of_sensor(
     }
 }
 
+impl Uncertainty {
+    /// The same with what one more unknown may be off by: `change` is that of the sensor with one standard deviation of it, a right
+    /// perturbation along the sensor's axes.
+    pub(crate) fn with_change(&self, change: &Vector6<f64>, flange_from_sensor: &Rigid) -> Self {
+        let to_sensor_axes = to_flange_axes(flange_from_sensor).transpose();
+        let right_covariance = to_sensor_axes * self.covariance * to_sensor_axes.transpose() + change * change.transpose();
+        of_sensor(
+            &right_covariance,
+            self.degrees_of_freedom,
+            flange_from_sensor,
+            self.reference_point_in_sensor_mm,
+        )
+    }
+}
+
 /// By how much errors vary more where the noise was learnt from the same data: the variance of Student's t.
 pub(crate) fn doubt_in_the_noise(degrees_of_freedom: f64) -> f64 {
     /// With less the variance is unbounded; twice as much is as good as "hardly known".

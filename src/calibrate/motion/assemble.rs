@@ -11,7 +11,7 @@ use crate::calibrate::{
 };
 use crate::geometry::{Rigid, Transform, Vec3, stats};
 
-use super::found::{Answered, ClosedFormAnswer, MotionFound, MotionPose, RejectedPose};
+use super::found::{Answered, ClosedFormAnswer, MotionData, MotionFound, MotionPose, RejectedPose};
 use super::measured::{MIN_POSES, Measured};
 use super::noise::MotionNoise;
 use super::pose::{MotionState, NUM_UNKNOWNS, PosePair, sensor_block, sums_of};
@@ -107,12 +107,12 @@ impl Found<'_> {
             target_rotation_std_rad,
             tracked: None,
             time_offset: None,
-            reduced: Some(reduced),
+            data: MotionData::Poses(reduced.clone()),
         };
         let stations = stations(used, &places, &motion, &left_out_mm);
         let (noise, converged, num_iterations) =
             (settled.noise.model(), settled.minimum.converged, settled.minimum.num_iterations);
-        self.add_warnings(span, converged, num_iterations, &motion, uncertainty.as_ref());
+        self.add_warnings(span, converged, num_iterations, &motion, &reduced, uncertainty.as_ref());
         if let Some((station, error_mm, typical_mm)) = stands_out(&left_out_mm, &in_sample) {
             let label = stations[station].label.clone();
             self.warnings.push(Warning::StationStandsOut { label, error_mm, typical_mm });
@@ -162,9 +162,9 @@ impl Found<'_> {
         converged: bool,
         num_iterations: usize,
         motion: &MotionFound,
+        reduced: &MotionReduced,
         uncertainty: Option<&Uncertainty>,
     ) {
-        let Some(reduced) = &motion.reduced else { return };
         let num_stations = reduced.num_stations;
         if num_stations < FEW_BELOW {
             self.warnings.push(Warning::FewStations { num_stations, recommended: RECOMMENDED_POSES });

@@ -5,6 +5,7 @@ use crate::geometry::{Base, Flange, Sensor, Target, Transform, Vec3};
 
 use super::closed_form::ClosedForm;
 use super::reduced::MotionReduced;
+use super::stretches::TrackReduced;
 
 /// A published closed form's answer, against the refined one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,7 +74,8 @@ pub struct MotionFound {
     pub base_from_target: Transform<Base, Target>,
     /// The published closed forms beside the refined answer.
     pub closed_forms: Vec<ClosedFormAnswer>,
-    /// One entry a pose used, in the order of stations and captures.
+    /// One entry a pose used, in the order of stations and captures. A stretch of a tracked motion counts as a station, and the
+    /// place of a pose in the camera's stream as its capture.
     pub poses: Vec<MotionPose>,
     /// Poses that were left out.
     pub rejected: Vec<RejectedPose>,
@@ -87,8 +89,17 @@ pub struct MotionFound {
     pub tracked: Option<Tracked>,
     /// By how much the clocks differ, where that was looked for.
     pub time_offset: Option<TimeOffset>,
-    /// The data at the minimum, for validation and diagnosis; `None` of a tracked motion, whose poses hang together.
-    pub reduced: Option<MotionReduced>,
+    /// The data at the minimum, for validation.
+    pub data: MotionData,
+}
+
+/// What can be solved again with other stations.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MotionData {
+    /// The poses of a target.
+    Poses(MotionReduced),
+    /// The steps of a camera that tracks its own motion, in stretches.
+    Track(TrackReduced),
 }
 
 /// How well the steps of a tracked motion agree with those of the flange.

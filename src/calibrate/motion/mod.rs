@@ -22,14 +22,19 @@ mod scale;
 mod start;
 mod steps;
 pub mod streams;
+mod stretches;
 pub mod time_offset;
+mod track;
+mod track_noise;
 
 pub use closed_form::ClosedForm;
-pub use found::{Answered, ClosedFormAnswer, MotionFound, MotionPose, RejectedPose, TimeOffset, Tracked};
+pub use found::{Answered, ClosedFormAnswer, MotionData, MotionFound, MotionPose, RejectedPose, TimeOffset, Tracked};
 pub use measured::MIN_POSES;
 pub use pose::{MotionState, PosePair};
 pub use reduced::{MotionReduced, MotionRefit};
+pub use steps::{TrackNoise, TrackPose};
 pub use streams::{CameraPose, StreamProblem, Weighing, solve_streams};
+pub use stretches::{TrackReduced, TrackRefit};
 
 use crate::geometry::Rigid;
 
@@ -38,6 +43,7 @@ use assemble::Found;
 use measured::{Measured, measured};
 use noise::MotionNoise;
 use pair::chosen;
+use refine::Minimum;
 use rejection::settle_on_agreeing;
 
 /// Solves.
@@ -68,10 +74,10 @@ pub fn refined(problem: &MotionProblem) -> Result<Rigid, SolveError> {
     Ok(refine::settle(&measured, start, MotionNoise::of(problem))?.minimum.unknowns.flange_from_sensor)
 }
 
-/// The least sum of squares, by the noise as it is stated.
-fn least_squares(problem: &MotionProblem) -> Result<f64, SolveError> {
+/// The minimum by the noise as it is stated.
+fn least_squares(problem: &MotionProblem) -> Result<Minimum, SolveError> {
     let (measured, start) = started(problem)?;
-    Ok(refine::settle_with(&measured, start, MotionNoise::of(problem))?.minimum.sums.cost)
+    Ok(refine::settle_with(&measured, start, MotionNoise::of(problem))?.minimum)
 }
 
 fn started(problem: &MotionProblem) -> Result<(Vec<Measured<'_>>, MotionState), SolveError> {

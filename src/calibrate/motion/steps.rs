@@ -18,12 +18,17 @@ const UNKNOWN: f64 = 1e9;
 
 /// A pose of the track: of the flange (inverted for a fixed sensor) and of the camera, and what the step that leads here may be
 /// off by.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct TrackPose {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrackPose {
+    /// When, by the camera's clock, s.
+    pub time_s: f64,
+    /// A; inverted for a fixed sensor.
     pub base_from_flange: Rigid,
+    /// Where the camera says that it is.
     pub world_from_sensor: Rigid,
-    /// Of (rotation, translation) along the axes of the camera here, rad² and mm².
+    /// Of (rotation, translation) along the axes of the camera here, rad² and mm², as stated.
     pub covariance: Matrix6<f64>,
+    /// Whether the camera kept its way on the step that leads here.
     pub is_believed: bool,
 }
 
@@ -41,33 +46,37 @@ impl Unknowns<6> for SensorState {
     }
 }
 
-/// The noise of the robot (mm², rad²), and by how much larger than stated the steps' variances are.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct TrackNoise {
+/// What the steps are weighed by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrackNoise {
+    /// Variance of each coordinate of the robot's position, of every pose by itself, mm².
     pub position: f64,
+    /// The same of its orientation about each axis, rad².
     pub orientation: f64,
+    /// By how much larger than stated the variances of the steps' rotations are.
     pub rotation_factor: f64,
+    /// The same of their translations.
     pub translation_factor: f64,
 }
 
 /// A step's error and what it follows.
-struct Step {
-    error: Vector6<f64>,
+pub(super) struct Step {
+    pub error: Vector6<f64>,
     by_sensor: Matrix6<f64>,
     /// How the error follows one of the pose before, in the sensor's axes there.
     by_before: Matrix6<f64>,
     /// The step's own noise.
-    own: Matrix6<f64>,
+    pub own: Matrix6<f64>,
     /// The robot's, of the pose before and of the one here.
     robot: [Matrix6<f64>; 2],
 }
 
 impl Step {
-    fn of(before: &TrackPose, here: &TrackPose, sensor: &Rigid, noise: &TrackNoise, mount: Mount) -> Self {
+    pub fn of(before: &TrackPose, here: &TrackPose, sensor: &Rigid, noise: &TrackNoise, mount: Mount) -> Self {
         let of_sensor = before.world_from_sensor.inverse() * here.world_from_sensor;
         let of_flange = here.base_from_flange.inverse() * before.base_from_flange;
         let left = sensor.inverse() * of_flange * sensor * of_sensor;
-        let by_before = adjoint(&of_sensor.inverse());
+        let by_before = se3::adjoint(&of_sensor.inverse());
         let error = se3::join(so3::log(&left.rotation), left.translation.vector);
         let mut by_sensor = by_before - Matrix6::identity();
         let turned = by_sensor.fixed_view::<3, 3>(3, 0) + hat(left.translation.vector);
@@ -81,8 +90,13 @@ impl Step {
         }
     }
 
-    fn covariance(&self) -> Matrix6<f64> {
-        self.own + self.by_before * self.robot[0] * self.by_before.transpose() + self.robot[1]
+    pub fn covariance(&self) -> Matrix6<f64> {
+        self.own + self.of_robot()
+    }
+
+    /// What the robot's noise at both ends adds.
+    pub fn of_robot(&self) -> Matrix6<f64> {
+        self.by_before * self.robot[0] * self.by_before.transpose() + self.robot[1]
     }
 }
 
@@ -97,23 +111,13 @@ impl TrackNoise {
     /// Of the robot's pose, carried to the sensor's axes.
     fn of_robot(&self, pose: &TrackPose, sensor: &Rigid, mount: Mount) -> Matrix6<f64> {
         let own = Matrix6::from_diagonal(&se3::join(Vec3::repeat(self.orientation), Vec3::repeat(self.position)));
-        let to_sensor = adjoint(&match mount {
+        let to_sensor = se3::adjoint(&match mount {
             Mount::OnFlange => sensor.inverse(),
             // The poses are inverted: an error about the flange's axes is one about the outer axes here.
             Mount::Fixed => (pose.base_from_flange * sensor).inverse(),
         });
         to_sensor * own * to_sensor.transpose()
     }
-}
-
-/// How a twist (rotation, translation) looks in other axes.
-fn adjoint(motion: &Rigid) -> Matrix6<f64> {
-    let rotation = motion.rotation.to_rotation_matrix().into_inner();
-    let mut adjoint = Matrix6::zeros();
-    adjoint.fixed_view_mut::<3, 3>(0, 0).copy_from(&rotation);
-    adjoint.fixed_view_mut::<3, 3>(3, 3).copy_from(&rotation);
-    adjoint.fixed_view_mut::<3, 3>(3, 0).copy_from(&(hat(motion.translation.vector) * rotation));
-    adjoint
 }
 
 /// The track with what it is weighed by.
@@ -129,71 +133,45 @@ impl Track<'_> {
         self.poses.windows(2).map(|pair| Step::of(&pair[0], &pair[1], sensor, &self.noise, self.mount))
     }
 
-    /// The whitened sums.
-    pub fn sums(&self, sensor: &Rigid) -> Sums<6> {
-        let mut sums = Sums::<6>::zero();
-        let mut previous: Option<(Matrix6<f64>, Matrix6<f64>, SMatrix<f64, 6, 7>)> = None;
+    /// For each step, whitened: how its error follows the sensor (six columns), and the error; `None` if a covariance is none.
+    ///
+    /// A step is judged given the one before, so that the rows of any steps may be taken apart; those of all are the whole.
+    pub fn rows(&self, sensor: &Rigid) -> Option<Vec<SMatrix<f64, 6, 7>>> {
+        let mut all: Vec<SMatrix<f64, 6, 7>> = Vec::with_capacity(self.poses.len());
+        let mut previous: Option<(Matrix6<f64>, Matrix6<f64>)> = None;
         for step in self.steps(sensor) {
             let mut rows = SMatrix::<f64, 6, 7>::zeros();
             rows.fixed_view_mut::<6, 6>(0, 0).copy_from(&step.by_sensor);
             rows.set_column(6, &step.error);
             let mut covariance = step.covariance();
-            if let Some((robot, factor, whitened)) = previous {
+            if let (Some((robot, factor)), Some(whitened)) = (previous, all.last()) {
                 // What this step shares with the one before: the pose between them.
                 let shared = -step.by_before * robot;
-                let Some(tied) = factor.solve_lower_triangular(&shared.transpose()) else { return nothing() };
+                let tied = factor.solve_lower_triangular(&shared.transpose())?;
                 covariance -= tied.transpose() * tied;
                 rows -= tied.transpose() * whitened;
             }
-            let Some(factor) = covariance.cholesky().map(|factor| factor.l()) else { return nothing() };
-            let Some(whitened) = factor.solve_lower_triangular(&rows) else { return nothing() };
-            let by_sensor = whitened.fixed_view::<6, 6>(0, 0).into_owned();
-            let error = whitened.column(6).into_owned();
-            sums.hessian += by_sensor.transpose() * by_sensor;
-            sums.gradient -= by_sensor.transpose() * error;
-            sums.cost += error.norm_squared();
-            previous = Some((step.robot[1], factor, whitened));
+            let factor = covariance.cholesky()?.l();
+            all.push(factor.solve_lower_triangular(&rows)?);
+            previous = Some((step.robot[1], factor));
         }
-        sums
+        Some(all)
+    }
+
+    /// The sums, those of each step as often as `times` says of it.
+    pub fn sums(&self, sensor: &Rigid, times: impl Fn(usize) -> f64) -> Sums<6> {
+        let Some(rows) = self.rows(sensor) else { return Sums { cost: f64::NAN, ..Sums::zero() } };
+        sums_of_rows(rows.iter().enumerate().map(|(step, rows)| (rows, times(step))))
     }
 
     /// # Errors
     /// [`SolveError::Diverged`] if numbers run away.
-    pub fn minimise(&self, start: Rigid) -> Result<Descent<6, SensorState>, SolveError> {
-        descend_from(|state: &SensorState| self.sums(&state.0), SensorState(start), 1e-9, 1e-10)
-    }
-
-    /// By how much larger the variances of rotation and translation of the steps are than stated: what the errors scatter by
-    /// beyond the robot's noise. The median of the squares, so that a few lost steps do not count.
-    pub fn factors(&self, sensor: &Rigid) -> [f64; 2] {
-        /// A χ² with three degrees of freedom has this median.
-        const MEDIAN: f64 = 2.366;
-        /// Steps without noise keep a little, so that they can be weighed.
-        const LEAST: f64 = 1e-8;
-        let mut ratios = [Vec::new(), Vec::new()];
-        let unscaled =
-            Self { noise: TrackNoise { rotation_factor: 1.0, translation_factor: 1.0, ..self.noise }, ..*self };
-        let mut robot_share = [0.0; 2];
-        for (step, here) in unscaled.steps(sensor).zip(&self.poses[1..]) {
-            if !here.is_believed {
-                continue;
-            }
-            let robot = step.covariance() - step.own;
-            for (part, ratios) in ratios.iter_mut().enumerate() {
-                let trace = |covariance: &Matrix6<f64>| covariance.fixed_view::<3, 3>(3 * part, 3 * part).trace() / 3.0;
-                let own = trace(&step.own);
-                ratios.push(step.error.fixed_rows::<3>(3 * part).norm_squared() / own);
-                robot_share[part] += trace(&robot) / own;
-            }
-        }
-        #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 steps")]
-        let count = ratios[0].len().max(1) as f64;
-        [0, 1].map(|part| {
-            let scatter = crate::geometry::stats::median(&mut ratios[part]) / MEDIAN;
-            let left = scatter - robot_share[part] / count;
-            // Less than a hundredth of what is seen cannot be told from the robot's noise.
-            if left.is_finite() { left.max(0.01 * scatter).max(LEAST) } else { 1.0 }
-        })
+    pub fn minimise(
+        &self,
+        start: Rigid,
+        times: impl Fn(usize) -> f64 + Copy,
+    ) -> Result<Descent<6, SensorState>, SolveError> {
+        descend_from(|state: &SensorState| self.sums(&state.0, times), SensorState(start), 1e-9, 1e-10)
     }
 
     /// The square of each step's error over its covariance, and the error.
@@ -208,9 +186,17 @@ impl Track<'_> {
     }
 }
 
-/// Sums that no step can be made from: a covariance that is none.
-fn nothing() -> Sums<6> {
-    Sums { cost: f64::NAN, ..Sums::zero() }
+/// The sums of whitened rows, each as often as is said beside it.
+pub(super) fn sums_of_rows<'a>(rows: impl Iterator<Item = (&'a SMatrix<f64, 6, 7>, f64)>) -> Sums<6> {
+    let mut sums = Sums::<6>::zero();
+    for (rows, times) in rows.filter(|(_, times)| *times > 0.0) {
+        let by_sensor = rows.fixed_view::<6, 6>(0, 0).into_owned();
+        let error = rows.column(6).into_owned();
+        sums.hessian += by_sensor.transpose() * by_sensor * times;
+        sums.gradient -= by_sensor.transpose() * error * times;
+        sums.cost += error.norm_squared() * times;
+    }
+    sums
 }
 
 /// The covariance of a step about which nothing is stated: a usual tracker on a table-top scene.
@@ -231,6 +217,7 @@ mod tests {
             |shift: [f64; 3], turn: [f64; 3]| Rigid::from_parts(Vec3::from(shift).into(), so3::exp(Vec3::from(turn)));
         let sensor = pose([40.0, -20.0, 90.0], [0.2, -1.4, 2.0]);
         let track = |base_from_flange: Rigid| TrackPose {
+            time_s: 0.0,
             base_from_flange,
             world_from_sensor: base_from_flange * sensor,
             covariance: usual_covariance(),

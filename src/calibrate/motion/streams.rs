@@ -1,28 +1,21 @@
 //! Two streams of poses with times: of the flange, and of a camera that tracks its own motion or sees a target.
 //!
 //! Data flows streams → their time offset, from the rotation speeds ([`super::time_offset`]) → the flange at the camera's times
-//! → closed forms → least squares over the steps (`steps`), or over the poses as of a target → the offset refined along
+//! → closed forms → least squares over the steps (`track`), or over the poses as of a target → the offset refined along
 //! with it → [`Solution`].
 
 use nalgebra::{Matrix6, Vector6};
 
-use crate::calibrate::plate::descent::inverse_of;
-use crate::calibrate::rotation_start::{PoseGeometry, rotation_span};
-use crate::calibrate::shared_warnings::rotation_warnings;
-use crate::calibrate::uncertainty::{doubt_in_the_noise, of_sensor};
 use crate::calibrate::{
-    Capture, Method, MotionProblem, Mount, Noise, NoiseModel, Reading, RmsMax, Side, SideChoice, Solution, SolveError,
-    Station, StationSolution, TargetNoise, Warning,
+    Capture, MotionProblem, Mount, Noise, Reading, SideChoice, Solution, SolveError, Station, TargetNoise, Uncertainty,
+    Warning,
 };
-use crate::geometry::{Base, Flange, Rigid, Sensor, Transform, Vec3, World, stats};
+use crate::geometry::{Base, Flange, Rigid, Sensor, Transform, World, se3};
 
-use super::assemble::against;
-use super::found::{MotionFound, MotionPose, TimeOffset, Tracked};
-use super::measured::{LEVER_MM, MIN_POSES};
-use super::pose::{Information, MotionState, PosePair};
-use super::start;
-use super::steps::{Track, TrackNoise, TrackPose, usual_covariance};
+use super::found::TimeOffset;
+use super::steps::{Track, TrackPose, usual_covariance};
 use super::time_offset::{self, Timed, at, coarse, interval_s, longest_gap_s};
+use super::track::Settled;
 
 /// A camera's pose with its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,14 +57,8 @@ pub struct StreamProblem {
     pub find_offset: bool,
 }
 
-/// The distance for which the headline is stated where nothing is known of the scene, mm.
-const USUAL_DISTANCE_MM: f64 = 500.0;
-/// A usual robot, where nothing is stated: position (mm), orientation (rad).
-const USUAL_ROBOT: [f64; 2] = [0.05, 3e-4];
-/// The square of a step's error beyond which the camera lost its way there; see [`super::rejection`].
-const LOST: f64 = 45.0;
-/// Noise and lost steps settle in a few rounds.
-const MAX_ROUNDS: usize = 8;
+/// The offset is moved at most so often.
+const MAX_ROUNDS: usize = 4;
 
 /// Solves.
 ///
@@ -86,50 +73,73 @@ pub fn solve_streams(problem: &StreamProblem) -> Result<Solution, SolveError> {
     if !is_rising(&flange) || !is_rising(&camera) {
         return Err(SolveError::TimesNotRising);
     }
-    let start_s = if problem.find_offset { coarse(&flange, &camera).unwrap_or(0.0) } else { 0.0 };
-    let streams =
-        Streams { problem, flange: &flange, longest_gap_s: longest_gap_s(&flange), interval_s: interval_s(&camera) };
+    let streams = Streams {
+        problem,
+        flange: &flange,
+        longest_gap_s: longest_gap_s(&flange),
+        interval_s: interval_s(&flange).max(interval_s(&camera)),
+        reach_s: time_offset::reach_s(&flange),
+    };
     if !problem.find_offset {
         return streams.solve(None);
     }
-    let step_s = 0.5 * interval_s(&camera).min(interval_s(&flange));
-    let rough = streams.rough(start_s)?;
-    let cost = |offset_s: f64| streams.cost(&rough, offset_s);
-    match time_offset::refined(start_s, step_s, cost) {
-        Some((offset_s, std_s)) => streams.solve(Some(TimeOffset { offset_s, std_s: Some(std_s) })),
-        None => streams.solve(Some(TimeOffset { offset_s: start_s, std_s: None })),
+    let start_s = coarse(&flange, &camera).unwrap_or(0.0);
+    match streams.offset(start_s)? {
+        Some(offset) => streams.solve(Some(offset)),
+        None => streams.solve(Some(Offset { offset_s: start_s, std_s: None, change: Vector6::zeros() })),
     }
+}
+
+/// By how much the clocks differ, and what hangs on it.
+#[derive(Clone, Copy)]
+struct Offset {
+    offset_s: f64,
+    std_s: Option<f64>,
+    /// How the calibration follows it: a right perturbation (rotation, translation) a second.
+    change: Vector6<f64>,
 }
 
 struct Streams<'a> {
     problem: &'a StreamProblem,
     flange: &'a [Timed],
     longest_gap_s: f64,
-    /// Usual time between the camera's poses, s.
+    /// The longer one of the usual times between poses, s.
     interval_s: f64,
+    /// Over so much to either side the offsets are compared, s.
+    reach_s: f64,
 }
 
 /// What is kept while the offset is sought: the weights, and which poses take part.
 enum Rough {
-    Drifting(Box<Settled>),
+    Drifting { settled: Box<Settled>, places: Vec<usize> },
     Independent { noise: Noise, target_noise: TargetNoise, places: Vec<usize> },
 }
 
-/// The drifting track at one offset, once its noise has settled.
-struct Settled {
-    poses: Vec<TrackPose>,
-    /// Places of the poses in the camera's stream.
-    places: Vec<usize>,
-    noise: TrackNoise,
-    sensor: Rigid,
-    hessian: Matrix6<f64>,
-    num_iterations: usize,
-    converged: bool,
-    start: start::Start,
-}
-
 impl Streams<'_> {
-    /// The camera's poses for which the flange's is known, the flange inverted for a fixed sensor.
+    /// The offset near a start, if the data tell it.
+    fn offset(&self, start_s: f64) -> Result<Option<Offset>, SolveError> {
+        let mut start_s = start_s;
+        let mut latest = None;
+        for _ in 0..MAX_ROUNDS {
+            let rough = self.rough(start_s)?;
+            let minimum = |offset_s: f64| self.minimum(&rough, offset_s);
+            let cost = |offset_s: f64| minimum(offset_s).map(|(cost, _)| cost);
+            let Some((offset_s, std_s)) = time_offset::refined(start_s, self.reach_s, cost) else { return Ok(None) };
+            let around = [-self.reach_s, self.reach_s].map(|step_s| minimum(offset_s + step_s));
+            let [Some((_, before)), Some((_, after))] = around else { return Ok(None) };
+            let change = se3::log(&(before.inverse() * after)) / (2.0 * self.reach_s);
+            latest = Some(Offset { offset_s, std_s: Some(std_s), change });
+            // Weights and lost steps are those of the start.
+            if (offset_s - start_s).abs() < std_s {
+                break;
+            }
+            start_s = offset_s;
+        }
+        Ok(latest)
+    }
+
+    /// The camera's poses for which the flange's is known, the flange inverted for a fixed sensor; and their places in the
+    /// camera's stream.
     ///
     /// None within `margin_s` of an end of the flange's stream are taken.
     fn poses(&self, offset_s: f64, margin_s: f64) -> (Vec<TrackPose>, Vec<usize>) {
@@ -145,6 +155,7 @@ impl Streams<'_> {
                 continue;
             }
             poses.push(TrackPose {
+                time_s: camera.time_s,
                 base_from_flange: match self.problem.mount {
                     Mount::OnFlange => flange,
                     Mount::Fixed => flange.inverse(),
@@ -158,58 +169,14 @@ impl Streams<'_> {
         (poses, places)
     }
 
-    fn settled(&self, mut poses: Vec<TrackPose>, places: Vec<usize>) -> Result<Settled, SolveError> {
-        if poses.len() < MIN_POSES {
-            return Err(SolveError::TooFewStations { found: poses.len(), needed: MIN_POSES, refusal: None });
-        }
-        let of_flange: Vec<Rigid> = poses.iter().map(|pose| pose.base_from_flange).collect();
-        PoseGeometry::new(&of_flange)?;
-        let start = start::start(&pairs(&poses))?;
-        let std = |stated: Option<f64>, usual: f64| stated.unwrap_or(usual).powi(2);
-        let mut noise = TrackNoise {
-            position: std(self.problem.noise.position_std_mm, USUAL_ROBOT[0]),
-            orientation: std(self.problem.noise.orientation_std_rad, USUAL_ROBOT[1]),
-            rotation_factor: 1.0,
-            translation_factor: 1.0,
-        };
-        let mut sensor = start.state.flange_from_sensor;
-        let mount = self.problem.mount;
-        let mut latest = None;
-        for round in 1..=MAX_ROUNDS {
-            let track = Track { poses: &poses, noise, mount };
-            let found = track.minimise(sensor)?;
-            let moved = sensor.inverse() * found.unknowns.0;
-            sensor = found.unknowns.0;
-            latest = Some((found, round));
-            let [rotation_factor, translation_factor] = track.factors(&sensor);
-            let changed = (rotation_factor / noise.rotation_factor - 1.0).abs()
-                + (translation_factor / noise.translation_factor - 1.0).abs();
-            noise = TrackNoise { rotation_factor, translation_factor, ..noise };
-            let squares = Track { poses: &poses, noise, mount }.squares(&sensor);
-            let mut is_other = false;
-            for (pose, (_, error)) in poses[1..].iter_mut().zip(&squares) {
-                // A step that is not believed now is looked at as if it were.
-                let as_believed = TrackPose { is_believed: true, ..*pose };
-                let square = square_alone(&as_believed, error, &noise);
-                is_other |= pose.is_believed == (square > LOST);
-                pose.is_believed = square <= LOST;
-            }
-            let shift = moved.rotation.angle() + moved.translation.vector.norm() / LEVER_MM;
-            if !is_other && changed < 1e-3 && shift < 1e-7 {
-                break;
-            }
-        }
-        let (found, num_iterations) = latest.ok_or(SolveError::Diverged)?;
-        let hessian = Track { poses: &poses, noise, mount }.sums(&sensor).hessian;
-        Ok(Settled { poses, places, noise, sensor, hessian, num_iterations, converged: found.converged, start })
-    }
-
     fn rough(&self, offset_s: f64) -> Result<Rough, SolveError> {
         // At the ends of the streams a shift must not lose poses, or costs could not be compared.
-        let margin_s = 2.0 * interval_s(self.flange).max(self.interval_s);
-        let (poses, places) = self.poses(offset_s, margin_s);
+        let (poses, places) = self.poses(offset_s, self.reach_s + 2.0 * self.interval_s);
         Ok(match self.problem.weighing {
-            Weighing::Drifting => Rough::Drifting(Box::new(self.settled(poses, places)?)),
+            Weighing::Drifting => {
+                let settled = Settled::of(poses, self.problem.mount, self.problem.noise)?;
+                Rough::Drifting { settled: Box::new(settled), places }
+            }
             Weighing::Independent => {
                 let solution = super::solve(&self.as_targets(&poses, &places))?;
                 let of_robot = solution.noise.ok_or(SolveError::Diverged)?;
@@ -230,41 +197,51 @@ impl Streams<'_> {
         })
     }
 
-    /// The least sum of squares at another offset, with the same weights and the same poses.
-    fn cost(&self, rough: &Rough, offset_s: f64) -> Option<f64> {
+    /// The least sum of squares at another offset, with the same weights and the same poses, and the sensor on the flange there.
+    fn minimum(&self, rough: &Rough, offset_s: f64) -> Option<(f64, Rigid)> {
         let (poses, places) = self.poses(offset_s, 0.0);
         let of_place = |wanted: &usize| places.binary_search(wanted).ok().map(|idx| poses[idx]);
         match rough {
-            Rough::Drifting(settled) => {
-                let kept = settled.places.iter().zip(&settled.poses).map(|(place, as_settled)| {
+            Rough::Drifting { settled, places: wanted } => {
+                let kept = wanted.iter().zip(&settled.poses).map(|(place, as_settled)| {
                     let moved = of_place(place)?;
                     Some(TrackPose { base_from_flange: moved.base_from_flange, ..*as_settled })
                 });
                 let poses: Vec<TrackPose> = kept.collect::<Option<_>>()?;
                 let track = Track { poses: &poses, noise: settled.noise, mount: self.problem.mount };
-                Some(track.minimise(settled.sensor).ok()?.sums.cost)
+                let found = track.minimise(settled.sensor, |_| 1.0).ok()?;
+                Some((found.sums.cost, found.unknowns.0))
             }
             Rough::Independent { noise, target_noise, places: wanted } => {
                 let poses: Vec<TrackPose> = wanted.iter().map(of_place).collect::<Option<_>>()?;
                 let problem =
                     MotionProblem { noise: *noise, target_noise: *target_noise, ..self.as_targets(&poses, wanted) };
-                super::least_squares(&problem).ok()
+                let found = super::least_squares(&problem).ok()?;
+                Some((found.sums.cost, found.unknowns.flange_from_sensor))
             }
         }
     }
 
-    fn solve(&self, offset: Option<TimeOffset>) -> Result<Solution, SolveError> {
+    fn solve(&self, offset: Option<Offset>) -> Result<Solution, SolveError> {
         let offset_s = offset.map_or(0.0, |offset| offset.offset_s);
         let (poses, places) = self.poses(offset_s, 0.0);
         let mut solution = match self.problem.weighing {
-            Weighing::Drifting => self.of_track(self.settled(poses, places)?)?,
+            Weighing::Drifting => Settled::of(poses, self.problem.mount, self.problem.noise)?
+                .into_solution(self.problem.reference_distance_mm, &places)?,
             Weighing::Independent => super::solve(&self.as_targets(&poses, &places))?,
         };
+        let Some(Offset { offset_s, std_s, change }) = offset else { return Ok(solution) };
         if let Some(motion) = &mut solution.motion {
-            motion.time_offset = offset;
+            motion.time_offset = Some(TimeOffset { offset_s, std_s });
         }
-        if offset.is_some_and(|offset| offset.std_s.is_none()) {
-            solution.warnings.push(Warning::TimeOffsetUnknown);
+        match std_s {
+            // What is not known of the offset is not known of the calibration.
+            Some(std_s) => {
+                let sensor = solution.flange_from_sensor.rigid();
+                let with_offset = |known: &Uncertainty| known.with_change(&(change * std_s), sensor);
+                solution.uncertainty = solution.uncertainty.as_ref().map(with_offset);
+            }
+            None => solution.warnings.push(Warning::TimeOffsetUnknown),
         }
         Ok(solution)
     }
@@ -289,169 +266,4 @@ impl Streams<'_> {
             stations: poses.iter().zip(places).map(station).collect(),
         }
     }
-
-    fn of_track(&self, settled: Settled) -> Result<Solution, SolveError> {
-        let Settled { poses, places, noise, sensor, hessian, num_iterations, converged, start } = settled;
-        let all = pairs(&poses);
-        let state = MotionState::with_mean_target(sensor, &all);
-        let track = Track { poses: &poses, noise, mount: self.problem.mount };
-        let of_flange: Vec<Rigid> = poses.iter().map(|pose| pose.base_from_flange).collect();
-        let span = rotation_span(&of_flange);
-        let num_believed = poses[1..].iter().filter(|pose| pose.is_believed).count();
-        #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 steps")]
-        let degrees_of_freedom = (3 * num_believed).saturating_sub(6) as f64;
-        let reference_point = Vec3::new(0.0, 0.0, self.problem.reference_distance_mm.unwrap_or(USUAL_DISTANCE_MM));
-        let covariance = inverse_of(&hessian)? * doubt_in_the_noise(degrees_of_freedom);
-        let uncertainty = of_sensor(&covariance, degrees_of_freedom, &sensor, reference_point);
-        let squares = track.squares(&sensor);
-        let believed = || squares.iter().zip(&poses[1..]).filter(|(_, pose)| pose.is_believed).map(|(step, _)| step);
-        let step_mm = |(_, error): &(f64, Vector6<f64>)| error.fixed_rows::<3>(3).norm();
-        let step_rad = |(_, error): &(f64, Vector6<f64>)| error.fixed_rows::<3>(0).norm();
-        let tracked = Tracked {
-            num_steps: squares.len(),
-            num_lost: squares.len() - num_believed,
-            step_mm: RmsMax {
-                rms_mm: stats::rms(believed().map(step_mm)),
-                max_mm: stats::max(believed().map(step_mm)),
-            },
-            step_rms_rad: stats::rms(believed().map(step_rad)),
-            rotation_std_factor: noise.rotation_factor.sqrt(),
-            translation_std_factor: noise.translation_factor.sqrt(),
-        };
-        let mut warnings = Vec::new();
-        if let Some(ratio) = start::inverted(&all, start::typical_mm(&start.state, &all)) {
-            warnings.push(Warning::StreamInverted { ratio });
-        }
-        warnings.extend(rotation_warnings(span, &PoseGeometry::new(&of_flange)?));
-        if !converged {
-            warnings.push(Warning::NotConverged { num_iterations });
-        }
-        let motion_poses = wandering(&state, &all, &places, &squares);
-        let target = state.base_from_target.translation.vector;
-        let stations = stations_of(&motion_poses, &all, target);
-        let step_std = |idx: usize| stats::rms(poses[1..].iter().map(|pose| noise_std(pose, &noise, idx)));
-        Ok(Solution {
-            method: Method::Motion,
-            mount: self.problem.mount,
-            flange_from_sensor: Transform::from_rigid(sensor),
-            target_in_base_mm: target,
-            scatter: RmsMax {
-                rms_mm: stats::rms(motion_poses.iter().map(|pose| pose.off_mm.norm())),
-                max_mm: stats::max(motion_poses.iter().map(|pose| pose.off_mm.norm())),
-            },
-            leave_one_out: None,
-            uncertainty: Some(uncertainty),
-            stations,
-            plate: None,
-            rotation_span_rad: span,
-            warnings,
-            num_iterations,
-            noise: Some(NoiseModel {
-                position_std_mm: noise.position.sqrt(),
-                orientation_std_rad: noise.orientation.sqrt(),
-                station_position_std_mm: 0.0,
-                station_orientation_std_rad: 0.0,
-                is_stated: self.problem.noise.position_std_mm.is_some()
-                    && self.problem.noise.orientation_std_rad.is_some(),
-                above_stated: None,
-            }),
-            radius: None,
-            reduced: None,
-            change_by_radius: Vector6::zeros(),
-            workspace_point_by_radius: Vec3::zeros(),
-            motion: Some(MotionFound {
-                base_from_target: Transform::from_rigid(state.base_from_target),
-                closed_forms: start.answers.iter().map(|answer| against(answer, &all, &state)).collect(),
-                rotation_scatter_rad: stats::rms(motion_poses.iter().map(|pose| pose.off_rad.norm())),
-                poses: motion_poses,
-                rejected: Vec::new(),
-                target_translation_std_mm: step_std(3),
-                target_rotation_std_rad: step_std(0),
-                tracked: Some(tracked),
-                time_offset: None,
-                reduced: None,
-            }),
-        })
-    }
-}
-
-/// What every pose says of the world's place: it wanders by the camera's drift.
-fn wandering(
-    state: &MotionState,
-    all: &[PosePair],
-    places: &[usize],
-    squares: &[(f64, Vector6<f64>)],
-) -> Vec<MotionPose> {
-    all.iter()
-        .zip(places)
-        .map(|(pair, place)| {
-            let errors = state.errors(pair);
-            let base_from_sensor = errors.sensor_from_base.transpose();
-            MotionPose {
-                station: pair.station,
-                station_idx: *place,
-                capture_idx: 0,
-                label: (place + 1).to_string(),
-                off_mm: base_from_sensor * errors.translation,
-                off_rad: base_from_sensor * errors.rotation,
-                normalised: match pair.station {
-                    0 => 0.0,
-                    step => (squares[step - 1].0 / 6.0).sqrt(),
-                },
-            }
-        })
-        .collect()
-}
-
-/// One entry a pose.
-fn stations_of(motion_poses: &[MotionPose], all: &[PosePair], target: Vec3) -> Vec<StationSolution> {
-    motion_poses
-        .iter()
-        .zip(all)
-        .map(|(pose, pair)| {
-            let in_sensor = pair.sensor_from_target.translation.vector;
-            StationSolution {
-                station_idx: pose.station_idx,
-                label: pose.label.clone(),
-                side: if in_sensor.y < 0.0 { Side::Minus } else { Side::Plus },
-                side_cost_ratio: None,
-                target_in_sensor_mm: in_sensor,
-                target_in_sensor_std_mm: None,
-                target_in_base_mm: target + pose.off_mm,
-                error_from_first_mm: pose.off_mm - motion_poses[0].off_mm,
-                // The target's place is the mean of all.
-                error_from_mean_mm: pose.off_mm,
-                leave_one_out_mm: None,
-                sweep: None,
-            }
-        })
-        .collect()
-}
-
-/// The square of a step's error by its own noise alone: what a lost step exceeds by far.
-fn square_alone(pose: &TrackPose, error: &Vector6<f64>, noise: &TrackNoise) -> f64 {
-    let (rotation, translation) = (noise_std(pose, noise, 0), noise_std(pose, noise, 3));
-    let robot = [noise.orientation, noise.position + noise.orientation * LEVER_MM * LEVER_MM];
-    error.fixed_rows::<3>(0).norm_squared() / (rotation.powi(2) + 2.0 * robot[0])
-        + error.fixed_rows::<3>(3).norm_squared() / (translation.powi(2) + 2.0 * robot[1])
-}
-
-/// Root mean variance of a step about (or along) the three axes from `first` on.
-fn noise_std(pose: &TrackPose, noise: &TrackNoise, first: usize) -> f64 {
-    let factor = if first == 0 { noise.rotation_factor } else { noise.translation_factor };
-    (pose.covariance.fixed_view::<3, 3>(first, first).trace() / 3.0 * factor).sqrt()
-}
-
-/// The same as poses of the world in the camera, for closed forms and tables.
-fn pairs(poses: &[TrackPose]) -> Vec<PosePair> {
-    poses
-        .iter()
-        .enumerate()
-        .map(|(station, pose)| PosePair {
-            station,
-            base_from_flange: pose.base_from_flange,
-            sensor_from_target: pose.world_from_sensor.inverse(),
-            information: Information::by_lever(LEVER_MM),
-        })
-        .collect()
 }

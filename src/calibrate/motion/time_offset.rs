@@ -79,14 +79,17 @@ pub fn coarse(flange: &[Timed], sensor: &[Timed]) -> Option<f64> {
     Some(if bend < 0.0 { best_s + 0.5 * step_s * (before - after) / bend } else { best_s })
 }
 
-/// Rotation speed (rad/s) in the middle of each pair of samples.
+/// Rotation speed (rad/s) in the middle of pairs of samples, far enough apart that a robot turns by more than its noise.
 fn speeds(stream: &[Timed]) -> Vec<(f64, f64)> {
-    let speed = |pair: &[Timed]| {
-        let [(start_s, start), (end_s, end)] = pair else { return None };
+    const APART_S: f64 = 0.1;
+    let interval_s = interval_s(stream);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "of a positive number")]
+    let apart = ((APART_S / interval_s).round() as usize).max(1);
+    let speed = |(start_s, start): &Timed, (end_s, end): &Timed| {
         let rotation: UnitQuaternion<f64> = start.rotation.inverse() * end.rotation;
-        (end_s > start_s).then(|| (0.5 * (start_s + end_s), rotation.angle() / (end_s - start_s)))
+        (0.5 * (start_s + end_s), rotation.angle() / (end_s - start_s))
     };
-    stream.windows(2).filter_map(speed).collect()
+    stream.iter().zip(stream.iter().skip(apart)).map(|(start, end)| speed(start, end)).collect()
 }
 
 /// Pearson's, over the samples of the sensor that lie within the flange's.
@@ -124,26 +127,43 @@ fn as_float(count: usize) -> f64 {
     count as f64
 }
 
-/// The minimum of a cost that is a parabola near it, and the standard deviation of its place where the cost is a sum of squares
-/// of unit variance; `None` if the cost has no minimum near the start.
-pub(super) fn refined(start_s: f64, step_s: f64, cost: impl Fn(f64) -> Option<f64>) -> Option<(f64, f64)> {
-    const MAX_STEPS: usize = 8;
-    let (mut place, mut step) = (start_s, step_s);
+/// Over how long to either side costs are compared, s: a whole number of the flange's intervals.
+///
+/// Each of the flange's poses has noise of its own. Between two of them the noise of the interpolated pose is smaller than at
+/// either, so that the cost ripples with the offset at the flange's interval; the least of it is pulled to between two samples,
+/// by many times σ where both streams tick in step. Costs that are whole intervals apart have the same share of the ripple, be
+/// the noise of neighbours independent or not.
+pub(super) fn reach_s(flange: &[Timed]) -> f64 {
+    /// Over this time a robot moves by far more than its noise, and its speed hardly changes.
+    const WANTED_S: f64 = 0.03;
+    let median_s = interval_s(flange);
+    let is_usual = |interval_s: &f64| (interval_s / median_s - 1.0).abs() < 0.5;
+    let usual = flange.windows(2).map(|pair| pair[1].0 - pair[0].0).filter(is_usual);
+    // The mean, as times may be rounded.
+    let (sum_s, count) = usual.fold((0.0, 0.0), |(sum_s, count), interval_s| (sum_s + interval_s, count + 1.0));
+    let mean_s: f64 = sum_s / count;
+    mean_s * (WANTED_S / mean_s).ceil().max(1.0)
+}
+
+/// The minimum of a cost that is about a parabola over `reach_s` to either side, and the standard deviation of its place where
+/// the cost is a sum of squares of unit variance; `None` if the cost has no minimum near the start.
+///
+/// The minimum is where costs at `reach_s` before and after it are the same.
+pub(super) fn refined(start_s: f64, reach_s: f64, cost: impl Fn(f64) -> Option<f64>) -> Option<(f64, f64)> {
+    const MAX_STEPS: usize = 10;
+    let mut place_s = start_s;
     for _ in 0..MAX_STEPS {
-        let [before, here, after] = [place - step, place, place + step].map(&cost);
-        let (before, here, after) = (before?, here?, after?);
+        let (before, here, after) = (cost(place_s - reach_s)?, cost(place_s)?, cost(place_s + reach_s)?);
         let bend = before - 2.0 * here + after;
         if bend <= 0.0 {
             return None;
         }
-        let move_s = (0.5 * step * (before - after) / bend).clamp(-2.0 * step_s, 2.0 * step_s);
-        place += move_s;
-        let std_s = step * (2.0 / bend).sqrt();
-        if move_s.abs() < 0.05 * std_s || move_s.abs() < 1e-3 * step_s {
-            return Some((place, std_s));
+        let std_s = reach_s * (2.0 / bend).sqrt();
+        let move_s = (0.5 * reach_s * (before - after) / bend).clamp(-reach_s, reach_s);
+        place_s += move_s;
+        if move_s.abs() < 0.02 * std_s {
+            return Some((place_s, std_s));
         }
-        // Differences over about the width that the cost itself has.
-        step = std_s.clamp(0.05 * step_s, step_s);
     }
     None
 }

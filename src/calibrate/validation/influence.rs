@@ -2,17 +2,18 @@
 
 use nalgebra::SMatrix;
 
-use crate::calibrate::motion::{MotionRefit, MotionState};
+use crate::calibrate::motion::{MotionRefit, TrackRefit};
 use crate::calibrate::observation::{NUM_UNKNOWNS, State};
 use crate::calibrate::plate::PlateRefit;
+use crate::calibrate::plate::descent::{Sums, inverse_of};
 use crate::calibrate::reduced::Reduced;
-use crate::calibrate::solver::{Hessian, covariance_for_unit_noise};
-use crate::calibrate::{MotionFound, PlateFound, Solution};
+use crate::calibrate::solver::{Hessian, Minimum, covariance_for_unit_noise};
+use crate::calibrate::{Solution, motion, plate};
 use crate::geometry::so3::hat;
-use crate::geometry::{Mat3, Vec3, stats};
+use crate::geometry::{Mat3, Rigid, stats};
 
 use super::leave_one_out::{information_and_pull_in_base, minima_without_each};
-use super::workspace_point;
+use super::{Data, workspace_point};
 
 /// What one station means for the result.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,90 +34,107 @@ pub struct Influence {
 /// One entry a station; `None` where nothing can be left out.
 pub(super) fn influence(solution: &Solution) -> Option<Vec<Influence>> {
     let reference_point = solution.uncertainty.as_ref()?.reference_point_in_sensor_mm;
-    match (&solution.reduced, &solution.plate, &solution.motion) {
-        (Some(reduced), _, _) => of_stations(solution, reduced, reference_point),
-        (None, Some(plate), _) => of_plate(plate, reference_point),
-        (None, None, Some(motion)) => of_motion(solution, motion, reference_point),
-        (None, None, None) => None,
+    let data = Data::of(solution)?;
+    let here = workspace_point(solution.flange_from_sensor.rigid(), reference_point);
+    let entry = |station: usize, left_out: Option<LeftOut>| {
+        let LeftOut { chi_square, freedom, flange_from_sensor } = left_out?;
+        let (station_idx, label) = named(solution, station)?;
+        Some(Influence {
+            station_idx,
+            label,
+            studentised_residual: (chi_square / freedom).sqrt(),
+            p_value: stats::chi_squared_p_value(chi_square, freedom),
+            moves_workspace_point_mm: (workspace_point(&flange_from_sensor, reference_point) - here).norm(),
+        })
+    };
+    without_each(data).into_iter().enumerate().map(|(station, left_out)| entry(station, left_out)).collect()
+}
+
+/// The caller's index and the user's name of a station used.
+fn named(solution: &Solution, station: usize) -> Option<(usize, String)> {
+    if let Some(plate) = &solution.plate {
+        let point = plate.points.iter().find(|point| point.station == station)?;
+        return Some((point.station_idx, point.label.clone()));
+    }
+    solution.stations.get(station).map(|named| (named.station_idx, named.label.clone()))
+}
+
+/// A station against the solution made without it.
+struct LeftOut {
+    /// Its residuals, squared in the metric of what may be expected of them.
+    chi_square: f64,
+    /// How many they are.
+    freedom: f64,
+    /// That solution.
+    flange_from_sensor: Rigid,
+}
+
+/// One entry a station; `None` where the others do not do.
+fn without_each(data: Data<'_>) -> Vec<Option<LeftOut>> {
+    match data {
+        Data::Points(reduced) => of_points(reduced),
+        Data::Plate(reduced) => {
+            let of_station = |(station, refit): (usize, Option<PlateRefit>)| {
+                let PlateRefit { state, covariance } = refit?;
+                let times = |of: usize| if of == station { 1.0 } else { 0.0 };
+                let count = reduced.points.iter().filter(|point| point.station == station).count();
+                let own = plate::points::sums_of(&reduced.points, &state, times);
+                LeftOut::of(&own, &covariance, 2 * count, state.flange_from_sensor)
+            };
+            reduced.without_each().into_iter().enumerate().map(of_station).collect()
+        }
+        Data::Motion(reduced) => {
+            let of_station = |(station, refit): (usize, Option<MotionRefit>)| {
+                let MotionRefit { state, covariance } = refit?;
+                let times = |of: usize| if of == station { 1.0 } else { 0.0 };
+                let count = reduced.poses.iter().filter(|pose| pose.station == station).count();
+                let own = motion::pose::sums_of(&reduced.poses, &state, times);
+                LeftOut::of(&own, &covariance, 6 * count, state.flange_from_sensor)
+            };
+            reduced.without_each().into_iter().enumerate().map(of_station).collect()
+        }
+        Data::Track(reduced) => {
+            let of_stretch = |(stretch, refit): (usize, Option<TrackRefit>)| {
+                let TrackRefit { flange_from_sensor, covariance } = refit?;
+                let own = reduced.sums_of_stretch(stretch, &flange_from_sensor);
+                LeftOut::of(&own, &covariance, 6 * reduced.num_believed(stretch), flange_from_sensor)
+            };
+            reduced.without_each().into_iter().enumerate().map(of_stretch).collect()
+        }
     }
 }
 
-fn of_stations(solution: &Solution, reduced: &Reduced, reference_point: Vec3) -> Option<Vec<Influence>> {
-    let factor = reduced.variance_factor?;
-    let here = workspace_point(&reduced.state.flange_from_sensor, reference_point);
-    minima_without_each(reduced)
-        .into_iter()
-        .zip(&solution.stations)
-        .enumerate()
-        .map(|(idx, (minimum, station))| {
-            let minimum = minimum?;
-            let others = covariance_for_unit_noise(&minimum.hessian).ok()?;
-            let chi_square = squared_residual(reduced, idx, &minimum.state, &others)? / factor;
-            Some(Influence {
-                station_idx: station.station_idx,
-                label: station.label.clone(),
-                studentised_residual: (chi_square / 3.0).sqrt(),
-                p_value: stats::chi_squared_p_value(chi_square, 3.0),
-                moves_workspace_point_mm: (workspace_point(&minimum.state.flange_from_sensor, reference_point) - here)
-                    .norm(),
-            })
-        })
-        .collect()
+impl LeftOut {
+    /// From the station's own sums at the solution of the others, and the covariance P of that.
+    ///
+    /// With J how the residuals r follow the unknowns and W their weights, they have the covariance W⁻¹ + J P Jᵀ. Its inverse
+    /// (Woodbury's) gives the square rᵀ W r − gᵀ (P⁻¹ + H)⁻¹ g with H = Jᵀ W J and g = Jᵀ W r: the sums suffice.
+    fn of<const N: usize>(
+        own: &Sums<N>,
+        others: &SMatrix<f64, N, N>,
+        num_residuals: usize,
+        flange_from_sensor: Rigid,
+    ) -> Option<Self> {
+        let with_own = inverse_of(&(inverse_of(others).ok()? + own.hessian)).ok()?;
+        let explained = own.gradient.dot(&(with_own * own.gradient));
+        #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 residuals")]
+        let freedom = num_residuals as f64;
+        Some(Self { chi_square: (own.cost - explained).max(0.0), freedom, flange_from_sensor })
+    }
 }
 
-/// The same for a plate: each point of a station against the edge of the solution made without it.
-fn of_plate(plate: &PlateFound, reference_point: Vec3) -> Option<Vec<Influence>> {
-    let reduced = &plate.reduced;
-    let here = workspace_point(&reduced.state.flange_from_sensor, reference_point);
-    let of_station = |(station, refit): (usize, Option<PlateRefit>)| {
-        let refit = refit?;
-        let named = plate.points.iter().find(|point| point.station == station)?;
-        let (mut chi_square, mut freedom) = (0.0, 0.0);
-        for point in reduced.points.iter().filter(|point| point.station == station) {
-            let by_unknowns = refit.state.by_unknowns(point);
-            let predicted = by_unknowns * refit.covariance * by_unknowns.transpose();
-            let expected = predicted + point.information.try_inverse()?;
-            let off = refit.state.off_edge(point);
-            chi_square += off.dot(&(expected.try_inverse()? * off));
-            freedom += 2.0;
-        }
-        Some(Influence {
-            station_idx: named.station_idx,
-            label: named.label.clone(),
-            studentised_residual: (chi_square / freedom).sqrt(),
-            p_value: stats::chi_squared_p_value(chi_square, freedom),
-            moves_workspace_point_mm: (workspace_point(&refit.state.flange_from_sensor, reference_point) - here).norm(),
+fn of_points(reduced: &Reduced) -> Vec<Option<LeftOut>> {
+    let of_station = |(station, minimum): (usize, Option<Minimum>)| {
+        let minimum = minimum?;
+        let others = covariance_for_unit_noise(&minimum.hessian).ok()?;
+        let square = squared_residual(reduced, station, &minimum.state, &others)?;
+        Some(LeftOut {
+            chi_square: square / reduced.variance_factor?,
+            freedom: 3.0,
+            flange_from_sensor: minimum.state.flange_from_sensor,
         })
     };
-    reduced.without_each().into_iter().enumerate().map(of_station).collect()
-}
-
-/// The same for a target's poses: each pose of a station against the solution made without it.
-fn of_motion(solution: &Solution, motion: &MotionFound, reference_point: Vec3) -> Option<Vec<Influence>> {
-    let reduced = motion.reduced.as_ref()?;
-    let here = workspace_point(&reduced.state.flange_from_sensor, reference_point);
-    let of_station = |(station, refit): (usize, Option<MotionRefit>)| {
-        let refit = refit?;
-        let named = solution.stations.get(station)?;
-        let (mut chi_square, mut freedom) = (0.0, 0.0);
-        for pose in reduced.poses.iter().filter(|pose| pose.station == station) {
-            let errors = refit.state.errors(pose);
-            let by_unknowns = MotionState::by_unknowns(pose, &errors);
-            let expected =
-                by_unknowns * refit.covariance * by_unknowns.transpose() + pose.information.matrix().try_inverse()?;
-            let off = errors.vector();
-            chi_square += off.dot(&(expected.try_inverse()? * off));
-            freedom += 6.0;
-        }
-        Some(Influence {
-            station_idx: named.station_idx,
-            label: named.label.clone(),
-            studentised_residual: (chi_square / freedom).sqrt(),
-            p_value: stats::chi_squared_p_value(chi_square, freedom),
-            moves_workspace_point_mm: (workspace_point(&refit.state.flange_from_sensor, reference_point) - here).norm(),
-        })
-    };
-    reduced.without_each().into_iter().enumerate().map(of_station).collect()
+    minima_without_each(reduced).into_iter().enumerate().map(of_station).collect()
 }
 
 /// The station's ball against that of the others, squared, in the metric of what may be expected of it.

@@ -18,7 +18,7 @@ use nalgebra::Matrix6;
 use crate::geometry::{Rigid, Vec3};
 
 use super::solver::{covariance_for_unit_noise, sensor_block};
-use super::{MotionReduced, PlateReduced, Reduced, Solution, motion, plate};
+use super::{MotionData, MotionReduced, PlateReduced, Reduced, Solution, TrackReduced, motion, plate};
 
 /// How much a solution can be relied on, beyond its residual and its σ.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,6 +52,7 @@ enum Data<'a> {
     Points(&'a Reduced),
     Plate(&'a PlateReduced),
     Motion(&'a MotionReduced),
+    Track(&'a TrackReduced),
 }
 
 /// A calibration from some of the stations, and the covariance of (rotation, translation), a right perturbation along the
@@ -64,7 +65,12 @@ struct Again {
 impl<'a> Data<'a> {
     fn of(solution: &'a Solution) -> Option<Self> {
         let of_plate = || solution.plate.as_ref().map(|plate| Self::Plate(&plate.reduced));
-        let of_motion = || solution.motion.as_ref().and_then(|motion| motion.reduced.as_ref()).map(Self::Motion);
+        let of_motion = || {
+            solution.motion.as_ref().map(|motion| match &motion.data {
+                MotionData::Poses(reduced) => Self::Motion(reduced),
+                MotionData::Track(reduced) => Self::Track(reduced),
+            })
+        };
         solution.reduced.as_ref().map(Self::Points).or_else(of_plate).or_else(of_motion)
     }
 
@@ -73,6 +79,7 @@ impl<'a> Data<'a> {
             Self::Points(reduced) => reduced.num_stations,
             Self::Plate(reduced) => reduced.num_stations,
             Self::Motion(reduced) => reduced.num_stations,
+            Self::Track(reduced) => reduced.num_stretches(),
         }
     }
 
@@ -100,6 +107,10 @@ impl<'a> Data<'a> {
                     flange_from_sensor: refit.state.flange_from_sensor,
                     covariance: motion::pose::sensor_block(&refit.covariance),
                 })
+            }
+            Self::Track(reduced) => {
+                let refit = reduced.solve_with_times(times).ok()?;
+                Some(Again { flange_from_sensor: refit.flange_from_sensor, covariance: refit.covariance })
             }
         }
     }

@@ -29,6 +29,7 @@ pub(super) fn normality(solution: &Solution) -> Option<Normality> {
         Data::Points(reduced) => whitened_residuals(reduced),
         Data::Plate(reduced) => whitened_distances(reduced),
         Data::Motion(reduced) => whitened_errors(reduced),
+        Data::Track(reduced) => reduced.whitened_errors(),
     };
     if residuals.len() < MIN_RESIDUALS {
         return None;
