@@ -110,6 +110,12 @@ pub enum PlanRefusal {
     /// The limits exclude everything.
     #[error("nothing lies within the limits; allow more tilt or spin, a wider range of stand-off, or more width")]
     NothingWithinLimits,
+    /// Nothing is planned for targets whose whole pose is seen: any turn shows all of it.
+    #[error(
+        "stations are planned for balls, tips and plates; with a board or a sequence, turn the flange by 20° to 60° about \
+         at least two axes"
+    )]
+    AnyTurnHelps,
     /// The solution's information is not that of a calibration.
     #[error("the solution is too poor to plan from")]
     Undetermined,
@@ -149,6 +155,7 @@ pub fn next_stations(solution: &Solution, limits: &Limits, num: usize) -> Result
     match (&solution.plate, &solution.reduced) {
         (Some(found), _) => next_at_plate(solution, found, limits, num),
         (None, Some(reduced)) => next_at_ball(solution, reduced, limits, num),
+        (None, None) if solution.motion.is_some() => Err(PlanRefusal::AnyTurnHelps),
         (None, None) => Err(PlanRefusal::Undetermined),
     }
 }

@@ -68,9 +68,8 @@ impl Track<'_> {
             rotation_factor: 1.0,
             translation_factor: 1.0,
         };
-        let variance = |covariance: &Matrix6<f64>, part: usize| {
-            covariance.fixed_view::<3, 3>(3 * part, 3 * part).trace() / 3.0
-        };
+        let variance =
+            |covariance: &Matrix6<f64>, part: usize| covariance.fixed_view::<3, 3>(3 * part, 3 * part).trace() / 3.0;
         let mut columns: [Vec<f64>; 5] = Default::default();
         for row in self.poses.windows(length + 1).step_by((length / 2).max(1)) {
             let (before, steps) = (&row[0], &row[1..]);
@@ -97,7 +96,8 @@ impl Track<'_> {
         if columns[0].is_empty() {
             return None;
         }
-        let [rotation, translation, turned, shifted, by_position] = columns.map(|mut column| stats::median(&mut column));
+        let [rotation, translation, turned, shifted, by_position] =
+            columns.map(|mut column| stats::median(&mut column));
         Some(Scatter { seen: [rotation, translation], by_orientation: [turned, shifted], by_position })
     }
 }

@@ -31,7 +31,8 @@ fn findings(out: &mut String, session: &Session, examination: &Examination<'_>, 
     let findings = &examination.diagnosis.findings;
     if findings.is_empty() {
         let has_next_pose = examination.plan.is_some_and(|plan| !plan.stations.is_empty());
-        let sentence = if is_good { words::NOTHING_FOUND } else { nothing_wrong_but_poorly_known(has_next_pose) };
+        let sentence =
+            if is_good { words::NOTHING_FOUND } else { nothing_wrong_but_poorly_known(&session.target, has_next_pose) };
         writeln!(out, "  {sentence}").ok();
     }
     for listed in listed(examination.diagnosis) {

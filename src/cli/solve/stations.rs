@@ -15,8 +15,11 @@ pub fn stations(out: &mut String, solution: &Solution) {
             let std_mm = solution.uncertainty.as_ref().map(|known| known.workspace_point_std_mm);
             points(out, plate, frame, decimals_for(std_mm));
         }
-        None if solution.method == Method::FixedPoint => places_of(out, "tip", &solution.stations, frame),
-        None if solution.method == Method::Motion => places_of(out, "target", &solution.stations, frame),
+        None if solution.method == Method::FixedPoint => places_of(out, ["station", "tip"], &solution.stations, frame),
+        None if solution.motion.as_ref().is_some_and(|motion| motion.tracked.is_some()) => {
+            places_of(out, ["stretch", "scene"], &solution.stations, frame);
+        }
+        None if solution.method == Method::Motion => places_of(out, ["station", "target"], &solution.stations, frame),
         None => balls(out, &solution.stations, frame),
     }
     if let Some(motion) = &solution.motion {
@@ -44,17 +47,18 @@ fn balls(out: &mut String, stations: &[StationSolution], frame: &str) {
     }
 }
 
-/// Of targets that have no side.
-fn places_of(out: &mut String, target: &str, stations: &[StationSolution], frame: &str) {
+/// Of targets that have no side; the words are what the rows are of, and what is seen.
+fn places_of(out: &mut String, [row, target]: [&str; 2], stations: &[StationSolution], frame: &str) {
+    let width = stations.iter().map(|station| station.label.chars().count()).fold(8, usize::max);
     writeln!(
         out,
-        "  station  {:^29}  {:^29}    error from first / mm    left out",
+        "  {row:<width$} {:^29}  {:^29}    error from first / mm    left out",
         format!("{target} in sensor / mm"),
         format!("{target} in {frame} / mm")
     )
     .ok();
     for station in stations {
-        writeln!(out, "  {:<8} {}", station.label, places(station)).ok();
+        writeln!(out, "  {:<width$} {}", station.label, places(station)).ok();
     }
 }
 

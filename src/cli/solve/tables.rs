@@ -7,7 +7,7 @@ use crate::diagnose::{Diagnosis, verdict_with};
 use crate::geometry::{Flange, Sensor, Transform};
 use crate::report::compare::{distance_from_truth, improvement, maximum_error_mm};
 use crate::report::digits::{decimals_for, fixed, signed};
-use crate::session::Session;
+use crate::session::{Session, Target};
 use crate::text;
 use crate::text::conventions::not_known_apart;
 
@@ -18,17 +18,7 @@ use super::stations::stations;
 /// Writing to a string does not fail, hence the `ok()`s.
 pub fn tables(session: &Session, results: &[MethodResult], diagnosis: Option<&Diagnosis>) -> String {
     let mut out = String::new();
-    let enabled = || session.stations.iter().filter(|station| station.enabled);
-    writeln!(
-        out,
-        "{} · {} · {} of {} stations, {} captures\n",
-        session.name,
-        text::start::target(&session.target),
-        enabled().count(),
-        session.stations.len(),
-        enabled().map(|station| station.captures.len()).sum::<usize>()
-    )
-    .ok();
+    writeln!(out, "{} · {}{}\n", session.name, text::start::target(&session.target), measured(session)).ok();
     if let Some(solution) = best_available(results) {
         writeln!(out, "{}", text::answer_head(solution.method)).ok();
         verdict_and_calibration(&mut out, session, solution, diagnosis);
@@ -53,6 +43,16 @@ pub fn tables(session: &Session, results: &[MethodResult], diagnosis: Option<&Di
         }
     }
     out
+}
+
+/// How much was measured of a target; a sequence has frames.
+fn measured(session: &Session) -> String {
+    if matches!(session.target, Target::Rgbd { .. }) {
+        return String::new();
+    }
+    let enabled = || session.stations.iter().filter(|station| station.enabled);
+    let num_captures: usize = enabled().map(|station| station.captures.len()).sum();
+    format!(" · {} of {} stations, {num_captures} captures", enabled().count(), session.stations.len())
 }
 
 fn overview(out: &mut String, session: &Session, results: &[MethodResult]) {
@@ -128,6 +128,13 @@ fn verdict_and_calibration(out: &mut String, session: &Session, solution: &Solut
     let (verdict, reason) = verdict_with(solution, diagnosis);
     writeln!(out, "  {}", text::verdict_line(verdict, reason, &solution.warnings, session)).ok();
     six_numbers(out, session, &solution.flange_from_sensor, solution.uncertainty.as_ref());
+    let Some(motion) = &solution.motion else { return };
+    if let Some(offset) = motion.time_offset {
+        writeln!(out, "  {}", text::odometry::time_offset(offset.offset_s, offset.std_s)).ok();
+    }
+    if let Some(tracked) = &motion.tracked {
+        writeln!(out, "  {}", text::odometry::steps_line(tracked)).ok();
+    }
 }
 
 /// The six numbers of a calibration, each with its σ where that is known.

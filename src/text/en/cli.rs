@@ -69,8 +69,10 @@ pub fn further_line(session: &Session) -> String {
 
 /// Nothing is wrong with a result that is not good all the same.
 #[must_use]
-pub const fn nothing_wrong_but_poorly_known(has_next_pose: bool) -> &'static str {
-    if has_next_pose {
+pub const fn nothing_wrong_but_poorly_known(target: &Target, has_next_pose: bool) -> &'static str {
+    if matches!(target, Target::Rgbd { .. }) {
+        "Nothing is wrong with the session, but the result is not well known. Record a longer way, with larger turns about all axes."
+    } else if has_next_pose {
         "Nothing is wrong with the session, but the result is not well known. Add stations; the next pose helps most."
     } else {
         "Nothing is wrong with the session, but the result is not well known. Add stations with other orientations."

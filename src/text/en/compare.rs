@@ -186,12 +186,12 @@ pub fn headline(distance_mm: &str) -> String {
 #[must_use]
 pub fn headline_amid_seen(method: Method, z_mm: &str) -> String {
     let seen = match method {
-        Method::PlateOrthogonal | Method::PlateBundle => "points",
-        Method::FixedPoint => "tips",
-        Method::Motion => "targets",
-        Method::BallFixedPoint | Method::BallMaxArcStep | Method::BallMaxArc | Method::BallBundle => "balls",
+        Method::PlateOrthogonal | Method::PlateBundle => "the points",
+        Method::FixedPoint => "the tips",
+        Method::Motion => "what was",
+        Method::BallFixedPoint | Method::BallMaxArcStep | Method::BallMaxArc | Method::BallBundle => "the balls",
     };
-    format!("a point amid the {seen} seen, z = {z_mm} mm:")
+    format!("a point amid {seen} seen, z = {z_mm} mm:")
 }
 
 /// The method behind the verdict; `is_continued` by the headline.

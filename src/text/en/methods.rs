@@ -13,7 +13,7 @@ pub const fn method_name(method: Method) -> &'static str {
         Method::PlateOrthogonal => "Orthogonal edges, published",
         Method::PlateBundle => "Bundle of both edges",
         Method::FixedPoint => "Fixed point of a tip",
-        Method::Motion => "Motions of a target",
+        Method::Motion => "Motions, A X = X B",
     }
 }
 
@@ -48,7 +48,7 @@ pub const fn method_description(method: Method) -> &'static str {
         Method::PlateBundle => "All edge points on two lines that meet at a right angle: the answer to use",
         Method::FixedPoint => "A tip touched by the laser line from several poses stays where it is",
         Method::Motion => {
-            "The flange's motions against the target's (A X = X B), weighed by the noise of both: the answer to use"
+            "The flange's motions against those that the sensor sees (A X = X B), weighed by the noise of both: the answer to use"
         }
     }
 }

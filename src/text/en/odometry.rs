@@ -1,5 +1,6 @@
 //! The words of the odometry: of a frame, of why one was lost, of the command.
 
+use crate::calibrate::motion::Tracked;
 use crate::odometry::{Estimator, Evaluation, Failure, Tracking, Travel};
 
 use super::plural;
@@ -118,6 +119,22 @@ pub fn no_hand_eye(reason: &str) -> String {
 pub fn time_offset(offset_s: f64, std_s: Option<f64>) -> String {
     let std = std_s.map_or_else(String::new, |std_s| format!(" ± {:.1}", 1000.0 * std_s));
     format!("the robot's times are those of the camera {:+.1}{std} ms", 1000.0 * offset_s)
+}
+
+/// How the steps of the camera and of the robot agree.
+#[must_use]
+pub fn steps_line(tracked: &Tracked) -> String {
+    let lost = match tracked.num_lost {
+        0 => String::new(),
+        lost => format!(", {lost} in which the camera lost its way left out"),
+    };
+    format!(
+        "{} step{} of the camera against the robot's: RMS {:.2} mm, {:.3}°{lost}",
+        tracked.num_steps,
+        plural(tracked.num_steps),
+        tracked.step_mm.rms_mm,
+        tracked.step_rms_rad.to_degrees()
+    )
 }
 
 /// Heads the list of frames that were not tracked.

@@ -25,7 +25,7 @@ pub(in crate::report::document) fn blocks(evidence: &Evidence) -> Vec<Block> {
     let convention = target.session.robot.notation.convention;
     let mut blocks = vec![
         Block::Paragraph(words::meaning(solution.mount).to_owned()),
-        Block::Paragraph(words::SENSOR_FRAME.to_owned()),
+        Block::Paragraph(words::sensor_frame(&target.session.target).to_owned()),
         Block::Table(matrix(solution)),
         Block::Table(quaternion(solution)),
         Block::Table(six_numbers(&target.session, solution)),

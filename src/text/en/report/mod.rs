@@ -146,7 +146,18 @@ pub const fn meaning(mount: Mount) -> &'static str {
 }
 
 /// The sensor's frame in words.
-pub const SENSOR_FRAME: &str = "Sensor frame: the laser plane is y = 0, x runs across the line, z along the range axis, y completes a right-handed frame. Lengths are millimetres.";
+#[must_use]
+pub const fn sensor_frame(target: &Target) -> &'static str {
+    match target {
+        Target::Pose { .. } => "Sensor frame: that in which the target's poses are given. Lengths are millimetres.",
+        Target::Rgbd { .. } => {
+            "Sensor frame: that of the colour camera: x to the right, y down, z along the optical axis. Lengths are millimetres."
+        }
+        _ => PROFILER_FRAME,
+    }
+}
+
+const PROFILER_FRAME: &str = "Sensor frame: the laser plane is y = 0, x runs across the line, z along the range axis, y completes a right-handed frame. Lengths are millimetres.";
 /// How many digits are printed.
 pub const DIGITS: &str =
     "Figures end with the second digit of their σ, R and quaternion one digit later; result.json has all digits.";
