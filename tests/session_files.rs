@@ -325,8 +325,16 @@ fn plate_and_sequence_sessions_are_read_and_kept() {
         "sequence": "desk/run 1", "truth": {"their": 1}}"#;
     let session = parse(sequence.as_bytes(), "rgbd.json").expect("valid");
     assert_eq!(session.target, Target::Rgbd { sequence: "desk/run 1".to_owned() });
-    assert_eq!(session.truth, None, "the truth of a sequence is not ours to read");
+    assert_eq!(session.truth, None, "another program's truth is not ours to read");
     assert!(to_json(&session).contains("\"truth\""), "but it is kept");
+    assert_eq!(parse(to_json(&session).as_bytes(), "again.json"), Ok(session));
+    let pose = |x: u32| format!(r#"{{"translation_mm": [{x}, 2, 3], "quaternion_wxyz": [1, 0, 0, 0]}}"#);
+    let of_robot = format!(r#"{{"flange_from_sensor": {}, "base_from_world": {}, "late_s": 0.5}}"#, pose(1), pose(9));
+    let session = parse(sequence.replace(r#"{"their": 1}"#, &of_robot).as_bytes(), "rgbd.json").expect("valid");
+    let truth = session.truth.as_ref().expect("there is one");
+    assert_eq!(truth.flange_from_sensor.translation_mm(), Vec3::new(1.0, 2.0, 3.0));
+    assert_eq!(truth.base_from_target.expect("read").translation.vector, Vec3::new(9.0, 2.0, 3.0));
+    assert!(truth.unknown.contains_key("late_s"));
     assert_eq!(parse(to_json(&session).as_bytes(), "again.json"), Ok(session));
 }
 

@@ -44,10 +44,11 @@ pub fn difference(first: &Solution, second: &Solution) -> Difference {
 }
 
 /// The paper's "maximum error": the largest coordinate of any station's ball relative to the first station's, mm; of a plate
-/// the largest distance of a point from its edge.
+/// the largest distance of a point from its edge; of a camera's way what the steps of its worst stretch are off by.
 #[must_use]
 pub fn maximum_error_mm(solution: &Solution) -> f64 {
-    if solution.plate.is_some() {
+    let is_tracked = solution.motion.as_ref().is_some_and(|motion| motion.tracked.is_some());
+    if solution.plate.is_some() || is_tracked {
         return solution.scatter.max_mm;
     }
     solution.stations.iter().map(|station| station.error_from_first_mm.amax()).fold(0.0, f64::max)

@@ -29,20 +29,8 @@ pub(super) fn word_of<T: Copy + PartialEq>(choices: &[(&'static str, T)], value:
     choices.iter().find(|(_, choice)| *choice == value).map_or("", |(word, _)| word)
 }
 
-const SESSION: &[&str] = &[
-    "format",
-    "version",
-    "name",
-    "notes",
-    "robot",
-    "sensor",
-    "target",
-    "mount",
-    "stations",
-    "further",
-    "published",
-    "truth",
-];
+const SESSION: &[&str] =
+    &["format", "version", "name", "notes", "robot", "sensor", "target", "mount", "stations", "further", "published"];
 pub(super) const FURTHER: &[&str] = &["name", "target", "profile_std_mm", "stations"];
 pub(super) const ROBOT: &[&str] =
     &["model", "pose_convention", "pose_notation", "position_std_mm", "orientation_std_deg"];
@@ -78,9 +66,16 @@ pub(super) const TRUE_TARGET: ByMount = ByMount { on_flange: "base_from_target",
 pub(super) const TRUE_WORLD: ByMount = ByMount { on_flange: "base_from_world", fixed: "flange_from_world" };
 pub(super) const TRUE_PLATE: ByMount = ByMount { on_flange: "base_from_plate", fixed: "flange_from_plate" };
 
-/// Fields of the top level that are ours for this target; any others are kept as they are.
-pub(super) fn session(target: &Target) -> Vec<&'static str> {
-    let of_target: &[&str] = if matches!(target, Target::Rgbd { .. }) { &["sequence"] } else { &[] };
+/// Fields of the top level that are ours for this target; any others are kept as they are. The truth of a sequence may be that
+/// of another program, as of a vehicle.
+pub(super) fn session(target: &Target, is_truth_ours: bool) -> Vec<&'static str> {
+    let of_target: &[&str] = match target {
+        Target::Rgbd { .. } if is_truth_ours => &["sequence", "truth"],
+        Target::Rgbd { .. } => &["sequence"],
+        Target::Ball { .. } | Target::RightAnglePlate | Target::Point | Target::Pose { .. } | Target::Workpiece => {
+            &["truth"]
+        }
+    };
     [SESSION, of_target].concat()
 }
 

@@ -70,10 +70,13 @@ enum Kind {
 pub(super) fn session(root: &Object<'_>, mended: &mut Mended) -> Result<Session, Refusal> {
     let mut of_target = UnknownFields::new();
     let (target, known) = target(root, KINDS, &mut of_target)?;
-    let mut unknown = root.unknown(&names::session(&target));
+    let truth = match root.optional("truth") {
+        Some(cursor) if is_truth_ours(&cursor, &target) => Some(truth(&cursor, &target, mended)?),
+        _ => None,
+    };
+    let mut unknown = root.unknown(&names::session(&target, truth.is_some()));
     unknown.extend(of_target);
     let stations = stations(root, &target, mended)?;
-    let truth = root.optional("truth").map(|cursor| truth(&cursor, &target, mended)).transpose()?;
     Ok(Session {
         name: root.text_or_empty("name")?,
         notes: root.text_or_empty("notes")?,
@@ -470,6 +473,15 @@ fn published(cursor: &Cursor<'_>, num_stations: usize) -> Result<Published, Refu
         caption: object.text_or_empty("caption")?,
         unknown: object.unknown(names::PUBLISHED),
     })
+}
+
+/// The truth of a sequence is ours if it says where the sensor is; any other's is kept as it is.
+fn is_truth_ours(cursor: &Cursor<'_>, target: &Target) -> bool {
+    let says_where = |object: &Object<'_>| {
+        [names::TRUE_SENSOR.on_flange, names::TRUE_SENSOR.fixed].iter().any(|name| object.optional(name).is_some())
+    };
+    !matches!(target, Target::Rgbd { .. })
+        || cursor.object("an object with the true calibration").is_ok_and(|object| says_where(&object))
 }
 
 /// The truth; with a fixed sensor its fields are named after the frames that they are in, and either name is read.

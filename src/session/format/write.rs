@@ -54,7 +54,7 @@ pub fn to_json(session: &Session) -> String {
         out.field("truth");
         truth(&mut out, true_values, &session.target, session.mount);
     }
-    out.unknown(&session.unknown, &names::session(&session.target));
+    out.unknown(&session.unknown, &names::session(&session.target, session.truth.is_some()));
     out.close();
     out.text.push('\n');
     out.text

@@ -37,6 +37,7 @@ pub const ROTATION: &str = "rotation";
 /// What the columns of the errors mean.
 #[must_use]
 pub const fn errors_legend(target: &Target) -> [&'static str; 2] {
+    const STRETCH_LEFT_OUT: &str = "left out: each stretch against the calibration made without it, RMS 3D · σ point: 1 σ of a point in the workspace, 3D";
     const LEFT_OUT: &str = "left out: each station against the calibration made without it, RMS 3D · σ point: 1 σ of a point in the workspace, 3D";
     let first = match target {
         Target::RightAnglePlate => {
@@ -49,13 +50,14 @@ pub const fn errors_legend(target: &Target) -> [&'static str; 2] {
             "max: largest coordinate relative to the first station · RMS: scatter of the target's origin about its place, 3D"
         }
         Target::Rgbd { .. } => {
-            "max: largest coordinate relative to the first stretch · RMS: scatter of where the stretches of the way put the scene, 3D"
+            "max: what the steps of the worst stretch of the way are off by, RMS 3D, in sample · RMS: over all stretches"
         }
         Target::Ball { .. } | Target::Workpiece => {
             "max: largest coordinate (one axis) off the first station's ball, in sample, as in the papers · RMS: of the distances (3D) of all balls from their mean, in sample"
         }
     };
-    [first, LEFT_OUT]
+    let left_out = if matches!(target, Target::Rgbd { .. }) { STRETCH_LEFT_OUT } else { LEFT_OUT };
+    [first, left_out]
 }
 
 /// A method that gave nothing.
