@@ -101,10 +101,10 @@ pub struct Row {
     pub label: String,
     /// Whether it takes part now.
     pub is_enabled: bool,
-    /// The flange's position at the capture, of a station the first, mm.
-    pub translation_mm: Vec3,
+    /// The flange's position at the capture, of a station the first, mm; none of a stretch of a way.
+    pub translation_mm: Option<Vec3>,
     /// Its orientation there, w first.
-    pub quaternion_wxyz: [f64; 4],
+    pub quaternion_wxyz: Option<[f64; 4]>,
     /// What the method says about it; `None` if it did not use it.
     pub used: Option<UsedStation>,
 }
@@ -242,6 +242,7 @@ impl Comparison {
 fn method_table(session: &Session, solution: &Solution) -> MethodTable {
     let stations = session.stations.iter().enumerate();
     let rows = match &solution.plate {
+        None if matches!(session.target, Target::Rgbd { .. }) => solution.stations.iter().map(stretch_row).collect(),
         None => stations
             .map(|(station_idx, station)| {
                 let solved = solution.stations.iter().find(|used| used.station_idx == station_idx);
@@ -300,9 +301,21 @@ fn row(
         station_idx,
         label,
         is_enabled: station.enabled,
-        translation_mm: pose.map_or_else(Vec3::zeros, crate::geometry::Transform::translation_mm),
-        quaternion_wxyz: pose.map_or([1.0, 0.0, 0.0, 0.0], crate::geometry::Transform::quaternion_wxyz),
+        translation_mm: pose.map(crate::geometry::Transform::translation_mm),
+        quaternion_wxyz: pose.map(crate::geometry::Transform::quaternion_wxyz),
         used,
+    }
+}
+
+/// A stretch of a way stands for itself: the session lists none.
+fn stretch_row(stretch: &StationSolution) -> Row {
+    Row {
+        station_idx: stretch.station_idx,
+        label: stretch.label.clone(),
+        is_enabled: true,
+        translation_mm: None,
+        quaternion_wxyz: None,
+        used: Some(UsedStation::from(stretch)),
     }
 }
 

@@ -149,6 +149,11 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut CompareStat
     ui.advance_cursor_after_rect(area);
 }
 
+/// The paper's tables list poses of stations, and a way has none.
+fn has_paper_layout(model: &Comparison) -> bool {
+    !matches!(model.target, Target::Rgbd { .. })
+}
+
 fn toggles(ui: &mut Ui, model: &Comparison, shown: &[Method], state: &mut CompareState) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(5.0, 6.0);
@@ -176,7 +181,9 @@ fn toggles(ui: &mut Ui, model: &Comparison, shown: &[Method], state: &mut Compar
                 .on_hover_text(text::ABOUT_MEAN_HINT);
         }
         ui.add_space(2.0);
-        ui.toggle_value(&mut state.has_paper_layout, text::PAPER_LAYOUT);
+        if has_paper_layout(model) {
+            ui.toggle_value(&mut state.has_paper_layout, text::PAPER_LAYOUT);
+        }
         ui.toggle_value(&mut state.has_matrices, text::MATRICES);
         ui.add_space(2.0);
         table::tint_legend(ui);
@@ -195,11 +202,11 @@ fn method_cards(
         model.columns.iter().filter(|column| shown.contains(&column.method)).partition(|column| column.outcome.is_ok());
     let options = CardOptions {
         reference: state.reference,
-        has_paper_layout: state.has_paper_layout,
+        has_paper_layout: state.has_paper_layout && has_paper_layout(model),
         has_matrix: state.has_matrices,
     };
     let width = ui.available_width();
-    let min_width = if state.has_paper_layout { MIN_PAPER_CARD_WIDTH } else { MIN_CARD_WIDTH };
+    let min_width = if options.has_paper_layout { MIN_PAPER_CARD_WIDTH } else { MIN_CARD_WIDTH };
     for (columns, most) in
         [(tables, cards_a_row(width, min_width)), (refusals, cards_a_row(width, MIN_CARD_WIDTH).min(2))]
     {

@@ -50,10 +50,10 @@ pub fn show(
 
 fn blocks(row: &mut RowCells<'_>, widths: &[f32; 6], station: &Row, reference: ErrorReference) {
     let faded = !station.is_enabled;
-    let translation = station.translation_mm;
-    let lines = ["t1", "t2", "t3"].into_iter().zip(translation.iter().copied());
+    let translation: Option<[f64; 3]> = station.translation_mm.map(Into::into);
+    let lines = ["t1", "t2", "t3"].into_iter().zip(translation.into_iter().flatten());
     block(row, widths[1], faded, lines.map(|(name, value)| (name, value, coordinate(value), false)));
-    let lines = ["q0", "q1", "q2", "q3"].into_iter().zip(station.quaternion_wxyz);
+    let lines = ["q0", "q1", "q2", "q3"].into_iter().zip(station.quaternion_wxyz.into_iter().flatten());
     block(row, widths[2], faded, lines.map(|(name, value)| (name, value, widgets::fixed(value, 5), false)));
     let Some(used) = &station.used else {
         let words = if station.is_enabled { text::NOT_USED } else { text::LEFT_OUT };

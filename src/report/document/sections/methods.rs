@@ -29,7 +29,9 @@ fn of_target(target: &TargetEvidence, suffix: &str) -> Vec<Block> {
     if !comparison.differences.is_empty() {
         blocks.push(Block::Table(differences(&comparison.differences, suffix)));
     }
-    for column in &comparison.columns {
+    // A way has no poses of stations that the paper's table could list.
+    let has_stations = !matches!(target.session.target, Target::Rgbd { .. });
+    for column in comparison.columns.iter().filter(|_| has_stations) {
         if let Ok(table) = &column.outcome {
             blocks.push(Block::Table(paper_table::of_method(column.method, table, suffix)));
         }

@@ -48,8 +48,8 @@ fn row(row: &Row) -> Vec<Cell> {
         None => vector(None),
     };
     std::iter::once(Cell::words(&row.label))
-        .chain(row.quaternion_wxyz.map(|part| Cell::number(part, QUATERNION_DECIMALS)))
-        .chain(vector(Some(row.translation_mm)))
+        .chain((0..4).map(|part| Cell::maybe(row.quaternion_wxyz.map(|parts| parts[part]), QUATERNION_DECIMALS)))
+        .chain(vector(row.translation_mm))
         .chain(vector(used.map(|used| used.target_in_sensor_mm)))
         .chain(vector(used.map(|used| used.target_in_base_mm)))
         .chain(error)

@@ -5,7 +5,7 @@ use crate::calibrate::{Method, PlateFound, PlatePoint, Solution, StationSolution
 use crate::report::comparison::capture_label;
 use crate::report::document::{Block, Cell, Column, Table, typeset};
 use crate::report::evidence::{Evidence, TargetEvidence};
-use crate::session::Station;
+use crate::session::{Station, Target};
 use crate::text::report as words;
 
 use super::of_each_target;
@@ -21,6 +21,7 @@ fn of_target(target: &TargetEvidence, suffix: &str) -> Vec<Block> {
     let Some(solution) = target.best() else { return Vec::new() };
     let (columns, rows, note) = match &solution.plate {
         Some(plate) => points(target, plate),
+        None if matches!(target.session.target, Target::Rgbd { .. }) => stretches(target, solution),
         None => stations(target, solution),
     };
     vec![Block::Table(Table {
@@ -55,8 +56,7 @@ fn stations(target: &TargetEvidence, solution: &Solution) -> Parts {
             Column::number(words::OFF_NORMAL, Some("°"), "travel_off_normal_deg").under(words::SWEEP),
         ]);
     }
-    let influence = target.diagnosis().and_then(|diagnosis| diagnosis.validation.as_ref());
-    let influence = influence.map_or(&[][..], |validation| &validation.influence);
+    let influence = influence_of(target);
     let row = |(idx, station): (usize, &Station)| {
         let of = |solution: &&Solution| solution.stations.iter().find(|used| used.station_idx == idx).cloned();
         let used = of(&solution);
@@ -74,6 +74,35 @@ fn stations(target: &TargetEvidence, solution: &Solution) -> Parts {
     };
     let rows = target.session.stations.iter().enumerate().map(row).collect();
     (columns, rows, words::STATIONS_NOTE)
+}
+
+fn influence_of(target: &TargetEvidence) -> &[Influence] {
+    let validation = target.diagnosis().and_then(|diagnosis| diagnosis.validation.as_ref());
+    validation.map_or(&[][..], |validation| &validation.influence)
+}
+
+/// Of a camera's way.
+fn stretches(target: &TargetEvidence, solution: &Solution) -> Parts {
+    let columns = vec![
+        Column::words(words::STRETCH, "stretch"),
+        Column::number(words::POSES_COLUMN, None, "poses"),
+        Column::number(words::ERROR_SIZE, Some("mm"), "error_from_mean_mm"),
+        Column::number(words::LEFT_OUT_COLUMN, Some("mm"), "leave_one_out_mm"),
+        Column::number(words::STUDENTISED, None, "studentised_residual"),
+        Column::number(words::MOVES_POINT, Some("mm"), "moves_workspace_point_mm"),
+    ];
+    let influence = influence_of(target);
+    let poses = solution.motion.as_ref().map_or(&[][..], |motion| &motion.poses);
+    let row = |stretch: &StationSolution| {
+        let is_of_stretch = |idx: usize| idx == stretch.station_idx;
+        let influence = influence.iter().find(|influence| is_of_stretch(influence.station_idx));
+        let num_poses = poses.iter().filter(|pose| is_of_stretch(pose.station_idx)).count();
+        [Cell::words(&stretch.label), Cell::count(num_poses)]
+            .into_iter()
+            .chain(figures(Some(stretch), influence))
+            .collect()
+    };
+    (columns, solution.stations.iter().map(row).collect(), words::STRETCHES_NOTE)
 }
 
 fn figures(used: Option<&StationSolution>, influence: Option<&Influence>) -> [Cell; 4] {

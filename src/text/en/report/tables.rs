@@ -344,6 +344,10 @@ pub const SIDE: &str = "side";
 /// Head of a column.
 pub const EDGE: &str = "edge";
 /// Head of a column.
+pub const STRETCH: &str = "stretch";
+/// Head of a column.
+pub const POSES_COLUMN: &str = "poses";
+/// Head of a column.
 pub const CAPTURES_COLUMN: &str = "captures";
 /// Head of a column.
 pub const ERROR_SIZE: &str = "error |e|";
@@ -361,6 +365,8 @@ pub const PEAK: &str = "peak at";
 pub const OFF_NORMAL: &str = "off normal";
 /// What the columns mean.
 pub const STATIONS_NOTE: &str = "error: distance (3D) from the mean, in sample · left out: distance (3D) from what the others predict · studentised: residual in its σ · moves point: how far the workspace point moves without the station";
+/// The same for stretches of a way.
+pub const STRETCHES_NOTE: &str = "error: distance (3D) of where the stretch puts the scene from the mean, in sample · left out: what its steps are off by with the calibration made without it, RMS · studentised: residual in its σ · moves point: how far the workspace point moves without the stretch";
 /// The same for a plate.
 pub const EDGE_POINTS_NOTE: &str =
     "error: distance from its edge, in sample · left out: from the edges found without the station";
