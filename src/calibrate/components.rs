@@ -166,7 +166,7 @@ impl<const R: usize, const U: usize> Components<R, U> {
 }
 
 /// A product of small matrices: nalgebra packs those of more than five rows as if they were large ones.
-fn product<const R: usize, const K: usize, const C: usize>(
+pub(super) fn product<const R: usize, const K: usize, const C: usize>(
     left: &SMatrix<f64, R, K>,
     right: &SMatrix<f64, K, C>,
 ) -> SMatrix<f64, R, C> {

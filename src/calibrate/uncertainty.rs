@@ -98,13 +98,9 @@ impl Uncertainty {
     /// perturbation along the sensor's axes.
     pub(crate) fn with_change(&self, change: &Vector6<f64>, flange_from_sensor: &Rigid) -> Self {
         let to_sensor_axes = to_flange_axes(flange_from_sensor).transpose();
-        let right_covariance = to_sensor_axes * self.covariance * to_sensor_axes.transpose() + change * change.transpose();
-        of_sensor(
-            &right_covariance,
-            self.degrees_of_freedom,
-            flange_from_sensor,
-            self.reference_point_in_sensor_mm,
-        )
+        let right_covariance =
+            to_sensor_axes * self.covariance * to_sensor_axes.transpose() + change * change.transpose();
+        of_sensor(&right_covariance, self.degrees_of_freedom, flange_from_sensor, self.reference_point_in_sensor_mm)
     }
 }
 

@@ -48,7 +48,8 @@ pub struct TrackRefit {
 impl TrackReduced {
     /// Cuts the track into stretches of about as many steps that are believed.
     pub(super) fn new(poses: Vec<TrackPose>, noise: TrackNoise, mount: Mount, flange_from_sensor: Rigid) -> Self {
-        let believed: Vec<usize> = (1..poses.len()).filter(|place| poses[*place].is_believed).map(|place| place - 1).collect();
+        let believed: Vec<usize> =
+            (1..poses.len()).filter(|place| poses[*place].is_believed).map(|place| place - 1).collect();
         let num_stretches = (believed.len() / MIN_STEPS).clamp(1, MOST_STRETCHES);
         let mut starts: Vec<usize> =
             (0..num_stretches).filter_map(|idx| believed.get(idx * believed.len() / num_stretches)).copied().collect();

@@ -226,9 +226,10 @@ fn stations(
     let means: Vec<(Vec3, Vec3)> = (0..reduced.num_stretches())
         .map(|stretch| {
             let own = motion_poses.iter().zip(all).filter(|(pose, _)| pose.station == stretch);
-            let (off, seen, count) = own.fold((Vec3::zeros(), Vec3::zeros(), 0.0), |(off, seen, count), (pose, pair)| {
-                (off + pose.off_mm, seen + pair.sensor_from_target.translation.vector, count + 1.0)
-            });
+            let (off, seen, count) =
+                own.fold((Vec3::zeros(), Vec3::zeros(), 0.0), |(off, seen, count), (pose, pair)| {
+                    (off + pose.off_mm, seen + pair.sensor_from_target.translation.vector, count + 1.0)
+                });
             (off / count, seen / count)
         })
         .collect();
