@@ -6,7 +6,7 @@ mod motion_cell;
 
 use handeye::calibrate::motion::{CameraPose, StreamProblem, TrackReduced, Weighing, solve_streams};
 use handeye::calibrate::validation::{bootstrap, validate};
-use handeye::calibrate::{MotionData, Mount, Noise, Solution};
+use handeye::calibrate::{MotionData, Mount, Noise, Solution, SolveError};
 use handeye::geometry::so3::exp;
 use handeye::geometry::stats::{median, rms};
 use handeye::geometry::{Rigid, Transform, Vec3, se3};
@@ -307,4 +307,59 @@ fn short_tracks_have_no_stretches_to_leave_out() {
     assert_eq!(solution.stations.len(), 3);
     assert_eq!(solution.leave_one_out, None);
     assert!(validate(&solution).is_none());
+}
+
+/// A flange that turns as given, with a camera on it, both without noise.
+fn turning(turn: impl Fn(f64) -> Vec3) -> StreamProblem {
+    let sensor = Rigid::from_parts(Vec3::new(45.0, -30.0, 80.0).into(), exp(Vec3::new(0.3, -1.2, 2.0)));
+    let path = |time_s: f64| {
+        Rigid::from_parts(Vec3::new(500.0 + 60.0 * time_s.sin(), 40.0 * time_s.cos(), 300.0).into(), exp(turn(time_s)))
+    };
+    let times = |hz: f64| (0..200).map(move |idx| f64::from(idx) / hz);
+    StreamProblem {
+        mount: Mount::OnFlange,
+        noise: Noise::default(),
+        reference_distance_mm: None,
+        flange: times(20.0).map(|time_s| (time_s, Transform::from_rigid(path(time_s)))).collect(),
+        camera: times(20.0)
+            .map(|time_s| CameraPose {
+                time_s,
+                world_from_sensor: Transform::from_rigid(path(time_s) * sensor),
+                step_covariance: None,
+            })
+            .collect(),
+        weighing: Weighing::Drifting,
+        find_offset: false,
+    }
+}
+
+#[test]
+fn streams_that_leave_something_open_say_so() {
+    let axis = Vec3::new(0.6, 0.0, 0.8);
+    for weighing in [Weighing::Drifting, Weighing::Independent] {
+        let about_one = StreamProblem { weighing, ..turning(|time_s| axis * (0.5 * time_s).sin()) };
+        match solve_streams(&about_one) {
+            Err(SolveError::RotationsAboutOneAxis { axis_x, axis_y, axis_z }) => {
+                let found = Vec3::new(axis_x, axis_y, axis_z);
+                assert!(found.cross(&axis).norm() < 1e-6, "{found}");
+            }
+            other => panic!("{other:?}"),
+        }
+        let level = StreamProblem { weighing, ..turning(|_| axis) };
+        assert!(matches!(solve_streams(&level), Err(SolveError::NoRotation { .. })));
+        let free = |time_s: f64| Vec3::new((0.5 * time_s).sin(), (0.7 * time_s).cos(), 0.3 * time_s.sin());
+        let mut inverted = StreamProblem { weighing, ..turning(free) };
+        let is_named = |problem: &StreamProblem| {
+            let solution = solve_streams(problem).expect("solved");
+            solution.warnings.iter().any(|warning| warning.code() == "stream-inverted")
+        };
+        assert!(!is_named(&inverted), "{weighing:?}");
+        for pose in &mut inverted.camera {
+            pose.world_from_sensor = Transform::from_rigid(pose.world_from_sensor.rigid().inverse());
+        }
+        assert!(is_named(&inverted), "{weighing:?}");
+        let backwards: Vec<CameraPose> = inverted.camera.iter().rev().copied().collect();
+        let shuffled = StreamProblem { camera: backwards, ..inverted };
+        assert!(matches!(solve_streams(&shuffled), Err(SolveError::TimesNotRising)));
+    }
 }
