@@ -16,7 +16,9 @@ const PROPORTION_STD: f64 = 2.2;
 /// Scoring settles in four to ten steps, more where a component vanishes.
 const MAX_ITERATIONS: usize = 40;
 /// Changes below this are the end: far below how well variances can be known.
-const SETTLED: f64 = 1e-6;
+const SETTLED: f64 = 1e-4;
+/// Step (of a variance's logarithm) over which differences are taken.
+const DIFFERENCE: f64 = 1e-3;
 /// A variance falls or grows by no more than a factor of ten a step, …
 const MAX_STEP: f64 = 2.3;
 /// … and ends at 1e-12 or 1e12 times what it began with: the data have no noise, or no bounds.
@@ -45,12 +47,44 @@ impl<const R: usize, const U: usize> PointModel<R, U> {
 }
 
 /// What was found of the components.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Found {
     /// Logarithms of the factors on the variances; zero where a component is not open.
     pub log_factors: Vector3<f64>,
     /// Their covariance.
     pub covariance: Matrix3<f64>,
+}
+
+impl Found {
+    /// Nothing found yet: the factors are one.
+    pub fn nothing() -> Self {
+        Self { log_factors: Vector3::zeros(), covariance: Matrix3::zeros() }
+    }
+
+    /// Degrees of freedom (Satterthwaite's) of a variance that follows the components.
+    ///
+    /// # Errors
+    /// Those of `variance_by`.
+    pub fn degrees_of_freedom(
+        &self,
+        variance_by: impl Fn(&Self) -> Result<f64, SolveError>,
+    ) -> Result<f64, SolveError> {
+        if self.covariance == Matrix3::zeros() {
+            return Ok(f64::INFINITY);
+        }
+        let mut slope = Vector3::zeros();
+        for idx in 0..NUM_COMPONENTS {
+            let at = |step: f64| {
+                let mut found = *self;
+                found.log_factors[idx] += step;
+                variance_by(&found)
+            };
+            slope[idx] = (at(DIFFERENCE)? - at(-DIFFERENCE)?) / (2.0 * DIFFERENCE);
+        }
+        let variance = variance_by(self)?;
+        let spread = slope.dot(&(self.covariance * slope));
+        Ok(if spread > 0.0 { 2.0 * variance * variance / spread } else { f64::INFINITY })
+    }
 }
 
 /// The points, and the components that are open.
@@ -84,9 +118,11 @@ impl<const R: usize, const U: usize> Components<R, U> {
     /// [`SolveError::Undetermined`] if the points leave an unknown free.
     pub fn fit(&self, start: Vector3<f64>) -> Result<Found, SolveError> {
         let mut log_factors = start;
+        let mut covariance = Matrix3::zeros();
         for _ in 0..MAX_ITERATIONS {
             let (score, information) = self.scoring(&log_factors)?;
-            let step = inverse_of_open(&information) * score;
+            covariance = inverse_of_open(&information);
+            let step = covariance * score;
             let before = log_factors;
             for idx in (0..NUM_COMPONENTS).filter(|idx| self.is_open[*idx]) {
                 let stepped = before[idx] + step[idx].clamp(-MAX_STEP, MAX_STEP);
@@ -96,8 +132,7 @@ impl<const R: usize, const U: usize> Components<R, U> {
                 break;
             }
         }
-        let (_, information) = self.scoring(&log_factors)?;
-        Ok(Found { log_factors, covariance: inverse_of_open(&information) })
+        Ok(Found { log_factors, covariance })
     }
 
     /// How the likelihood rises with the logarithms, and the information about them.
@@ -166,7 +201,7 @@ impl<const R: usize, const U: usize> Components<R, U> {
 }
 
 /// A product of small matrices: nalgebra packs those of more than five rows as if they were large ones.
-fn product<const R: usize, const K: usize, const C: usize>(
+pub(super) fn product<const R: usize, const K: usize, const C: usize>(
     left: &SMatrix<f64, R, K>,
     right: &SMatrix<f64, K, C>,
 ) -> SMatrix<f64, R, C> {

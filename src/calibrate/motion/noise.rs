@@ -4,9 +4,9 @@
 //! which acts with the lever from the flange, and the target's orientation, which does not. What is stated is taken as it is;
 //! the rest begins in the proportions of a usual robot and camera and is found from the data as far as they tell it.
 
-use nalgebra::{Matrix3, Matrix6, Vector3};
+use nalgebra::Matrix6;
 
-use crate::calibrate::components::{Components, Found, NUM_COMPONENTS, PointModel};
+use crate::calibrate::components::{Components, Found, PointModel};
 use crate::calibrate::{AboveStated, MotionProblem, Mount, NoiseModel, SolveError, TargetNoise};
 use crate::geometry::so3::hat;
 use crate::geometry::{Mat3, Vec3, stats};
@@ -22,8 +22,6 @@ const USUAL_TARGET: [f64; 2] = [0.3, 2e-3];
 const LEAST_STD: [f64; 2] = [1e-4, 1e-7];
 /// From so many poses the noise is found; of more, as many that are spread over all.
 const MOST_FOR_NOISE: usize = 100;
-/// Step (of a variance's logarithm) over which differences are taken.
-const DIFFERENCE: f64 = 1e-3;
 
 /// A variance that is stated, or one of usual machines that is to be found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,10 +52,8 @@ pub(super) struct MotionNoise {
     robot_orientation: Variance,
     target_translation: Variance,
     target_rotation: Variance,
-    /// Logarithms of the factors on what is open: translations, the robot's orientation, the target's.
-    log_factors: Vector3<f64>,
-    /// Their covariance.
-    covariance: Matrix3<f64>,
+    /// What was found of what is open: translations, the robot's orientation, the target's.
+    found: Found,
     mount: Mount,
     /// The scatter against what is stated.
     pub above_stated: Option<AboveStated>,
@@ -79,8 +75,7 @@ impl MotionNoise {
             robot_orientation: Variance::new(problem.noise.orientation_std_rad, USUAL_ROBOT[1]),
             target_translation: Variance::new(translation_std_mm, USUAL_TARGET[0]),
             target_rotation: Variance::new(rotation_std_rad, USUAL_TARGET[1]),
-            log_factors: Vector3::zeros(),
-            covariance: Matrix3::zeros(),
+            found: Found::nothing(),
             mount: problem.mount,
             above_stated: None,
         }
@@ -108,7 +103,7 @@ impl MotionNoise {
 
     /// The poses with the information that this noise leaves about each.
     pub fn weighed(&self, measured: &[Measured], state: &MotionState) -> Vec<PosePair> {
-        let factors = self.log_factors.map(f64::exp);
+        let factors = self.found.log_factors.map(f64::exp);
         measured
             .iter()
             .map(|measured| {
@@ -153,8 +148,7 @@ impl MotionNoise {
             // Six hundred errors tell a noise to a few per cent; more poses would cost more than the calibration itself.
             let every = measured.len().div_ceil(MOST_FOR_NOISE);
             let models = measured.iter().step_by(every).map(|measured| self.model_of(measured, state)).collect();
-            let Found { log_factors, covariance } = Components::new(models).fit(self.log_factors)?;
-            (self.log_factors, self.covariance) = (log_factors, covariance);
+            self.found = Components::new(models).fit(self.found.log_factors)?;
         } else {
             #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 poses")]
             let freedom = freedom as f64;
@@ -174,21 +168,7 @@ impl MotionNoise {
         &self,
         variance_by: impl Fn(&Self) -> Result<f64, SolveError>,
     ) -> Result<f64, SolveError> {
-        if self.covariance == Matrix3::zeros() {
-            return Ok(f64::INFINITY);
-        }
-        let mut slope = Vector3::zeros();
-        for idx in 0..NUM_COMPONENTS {
-            let at = |step: f64| {
-                let mut noise = *self;
-                noise.log_factors[idx] += step;
-                variance_by(&noise)
-            };
-            slope[idx] = (at(DIFFERENCE)? - at(-DIFFERENCE)?) / (2.0 * DIFFERENCE);
-        }
-        let variance = variance_by(self)?;
-        let spread = slope.dot(&(self.covariance * slope));
-        Ok(if spread > 0.0 { 2.0 * variance * variance / spread } else { f64::INFINITY })
+        self.found.degrees_of_freedom(|found| variance_by(&Self { found: *found, ..*self }))
     }
 
     /// The robot's, for the reader.
@@ -209,7 +189,7 @@ impl MotionNoise {
     }
 
     fn std(&self, variance: Variance, component: usize) -> f64 {
-        let factor = if variance.is_open { self.log_factors[component].exp() } else { 1.0 };
+        let factor = if variance.is_open { self.found.log_factors[component].exp() } else { 1.0 };
         (variance.value * factor).sqrt()
     }
 

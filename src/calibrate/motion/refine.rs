@@ -14,8 +14,9 @@ pub(super) type Minimum = Descent<NUM_UNKNOWNS, MotionState>;
 const MAX_PASSES: usize = 20;
 /// Movements below this (rad, mm/100) are the end: a thousandth of what any robot repeats.
 const SETTLED: f64 = 1e-9;
-/// The noise is kept from this pass on, so that the passes can settle.
-const LAST_NOISE_ESTIMATE: usize = 3;
+/// The noise is found once, at the first minimum: what the unknowns can still take up of the errors is counted there, so that
+/// it hardly follows where exactly the minimum is.
+const LAST_NOISE_ESTIMATE: usize = 1;
 /// From a closed form hardly any damping is needed.
 const FIRST_DAMPING: f64 = 1e-12;
 

@@ -7,11 +7,12 @@
 
 use nalgebra::{Matrix6, SMatrix, SVector, Vector6};
 
+use crate::calibrate::components::product;
 use crate::calibrate::plate::descent::{Descent, Sums, Unknowns, descend_from};
 use crate::calibrate::plate::points::tangent_size;
 use crate::calibrate::{Mount, SolveError};
 use crate::geometry::so3::hat;
-use crate::geometry::{Rigid, Vec3, se3, so3};
+use crate::geometry::{Mat3, Rigid, Vec3, se3, so3};
 
 /// A step that is not to be believed has this variance more, rad² or mm²: it breaks the chain.
 const UNKNOWN: f64 = 1e9;
@@ -96,27 +97,32 @@ impl Step {
 
     /// What the robot's noise at both ends adds.
     pub fn of_robot(&self) -> Matrix6<f64> {
-        self.by_before * self.robot[0] * self.by_before.transpose() + self.robot[1]
+        product(&product(&self.by_before, &self.robot[0]), &self.by_before.transpose()) + self.robot[1]
     }
 }
 
 impl TrackNoise {
     fn of_step(&self, pose: &TrackPose) -> Matrix6<f64> {
         let (rotation, translation) = (self.rotation_factor.sqrt(), self.translation_factor.sqrt());
-        let scale = Matrix6::from_diagonal(&se3::join(Vec3::repeat(rotation), Vec3::repeat(translation)));
-        let own = scale * pose.covariance * scale;
+        let scale = se3::join(Vec3::repeat(rotation), Vec3::repeat(translation));
+        let own = pose.covariance.component_mul(&(scale * scale.transpose()));
         if pose.is_believed { own } else { own + Matrix6::identity() * UNKNOWN }
     }
 
-    /// Of the robot's pose, carried to the sensor's axes.
+    /// Of the robot's pose, carried to the sensor's axes: the same in all directions, it only gains the lever.
     fn of_robot(&self, pose: &TrackPose, sensor: &Rigid, mount: Mount) -> Matrix6<f64> {
-        let own = Matrix6::from_diagonal(&se3::join(Vec3::repeat(self.orientation), Vec3::repeat(self.position)));
-        let to_sensor = se3::adjoint(&match mount {
-            Mount::OnFlange => sensor.inverse(),
+        let lever = hat(match mount {
+            Mount::OnFlange => sensor.inverse_transform_vector(&-sensor.translation.vector),
             // The poses are inverted: an error about the flange's axes is one about the outer axes here.
-            Mount::Fixed => (pose.base_from_flange * sensor).inverse(),
+            Mount::Fixed => (pose.base_from_flange * sensor).inverse().translation.vector,
         });
-        to_sensor * own * to_sensor.transpose()
+        let turned = lever * self.orientation;
+        let mut covariance = Matrix6::identity() * self.orientation;
+        covariance.fixed_view_mut::<3, 3>(3, 0).copy_from(&turned);
+        covariance.fixed_view_mut::<3, 3>(0, 3).copy_from(&turned.transpose());
+        let shifted = turned * lever.transpose() + Mat3::identity() * self.position;
+        covariance.fixed_view_mut::<3, 3>(3, 3).copy_from(&shifted);
+        covariance
     }
 }
 
@@ -146,10 +152,10 @@ impl Track<'_> {
             let mut covariance = step.covariance();
             if let (Some((robot, factor)), Some(whitened)) = (previous, all.last()) {
                 // What this step shares with the one before: the pose between them.
-                let shared = -step.by_before * robot;
+                let shared = product(&-step.by_before, &robot);
                 let tied = factor.solve_lower_triangular(&shared.transpose())?;
-                covariance -= tied.transpose() * tied;
-                rows -= tied.transpose() * whitened;
+                covariance -= product(&tied.transpose(), &tied);
+                rows -= product(&tied.transpose(), whitened);
             }
             let factor = covariance.cholesky()?.l();
             all.push(factor.solve_lower_triangular(&rows)?);
@@ -192,7 +198,7 @@ pub(super) fn sums_of_rows<'a>(rows: impl Iterator<Item = (&'a SMatrix<f64, 6, 7
     for (rows, times) in rows.filter(|(_, times)| *times > 0.0) {
         let by_sensor = rows.fixed_view::<6, 6>(0, 0).into_owned();
         let error = rows.column(6).into_owned();
-        sums.hessian += by_sensor.transpose() * by_sensor * times;
+        sums.hessian += product(&by_sensor.transpose(), &by_sensor) * times;
         sums.gradient -= by_sensor.transpose() * error * times;
         sums.cost += error.norm_squared() * times;
     }

@@ -58,7 +58,11 @@ pub struct StreamProblem {
 }
 
 /// The offset is moved at most so often.
-const MAX_ROUNDS: usize = 4;
+const MAX_ROUNDS: usize = 6;
+/// Offsets this many σ apart are compared, where the motion is not too fast for that.
+const REACH_STDS: f64 = 20.0;
+/// A longer reach is not made longer still, s.
+const LONGEST_REACH_S: f64 = 0.1;
 
 /// Solves.
 ///
@@ -78,7 +82,6 @@ pub fn solve_streams(problem: &StreamProblem) -> Result<Solution, SolveError> {
         flange: &flange,
         longest_gap_s: longest_gap_s(&flange),
         interval_s: interval_s(&flange).max(interval_s(&camera)),
-        reach_s: time_offset::reach_s(&flange),
     };
     if !problem.find_offset {
         return streams.solve(None);
@@ -105,8 +108,6 @@ struct Streams<'a> {
     longest_gap_s: f64,
     /// The longer one of the usual times between poses, s.
     interval_s: f64,
-    /// Over so much to either side the offsets are compared, s.
-    reach_s: f64,
 }
 
 /// What is kept while the offset is sought: the weights, and which poses take part.
@@ -119,21 +120,31 @@ impl Streams<'_> {
     /// The offset near a start, if the data tell it.
     fn offset(&self, start_s: f64) -> Result<Option<Offset>, SolveError> {
         let mut start_s = start_s;
+        let mut reach_s = time_offset::reach_s(self.flange);
         let mut latest = None;
         for _ in 0..MAX_ROUNDS {
-            let rough = self.rough(start_s)?;
+            let rough = self.rough(start_s, reach_s)?;
             let minimum = |offset_s: f64| self.minimum(&rough, offset_s);
-            let cost = |offset_s: f64| minimum(offset_s).map(|(cost, _)| cost);
-            let Some((offset_s, std_s)) = time_offset::refined(start_s, self.reach_s, cost) else { return Ok(None) };
-            let around = [-self.reach_s, self.reach_s].map(|step_s| minimum(offset_s + step_s));
-            let [Some((_, before)), Some((_, after))] = around else { return Ok(None) };
-            let change = se3::log(&(before.inverse() * after)) / (2.0 * self.reach_s);
-            latest = Some(Offset { offset_s, std_s: Some(std_s), change });
-            // Weights and lost steps are those of the start.
-            if (offset_s - start_s).abs() < std_s {
-                break;
+            let found = time_offset::refined(start_s, reach_s, |offset_s| Some(minimum(offset_s)?.0));
+            let is_far = |std_s: f64| reach_s > REACH_STDS * std_s || reach_s > LONGEST_REACH_S;
+            match found {
+                Some((offset_s, std_s)) if is_far(std_s) => {
+                    let around = [-reach_s, reach_s].map(|step_s| minimum(offset_s + step_s));
+                    let [Some((_, before)), Some((_, after))] = around else { return Ok(None) };
+                    let change = se3::log(&(before.inverse() * after)) / (2.0 * reach_s);
+                    latest = Some(Offset { offset_s, std_s: Some(std_s), change });
+                    // Weights and lost steps are those of the start.
+                    if (offset_s - start_s).abs() < std_s {
+                        break;
+                    }
+                    start_s = offset_s;
+                }
+                _ if reach_s > LONGEST_REACH_S => break,
+                _ => {
+                    start_s = found.map_or(start_s, |(offset_s, _)| offset_s);
+                    reach_s *= 2.0;
+                }
             }
-            start_s = offset_s;
         }
         Ok(latest)
     }
@@ -169,9 +180,9 @@ impl Streams<'_> {
         (poses, places)
     }
 
-    fn rough(&self, offset_s: f64) -> Result<Rough, SolveError> {
+    fn rough(&self, offset_s: f64, reach_s: f64) -> Result<Rough, SolveError> {
         // At the ends of the streams a shift must not lose poses, or costs could not be compared.
-        let (poses, places) = self.poses(offset_s, self.reach_s + 2.0 * self.interval_s);
+        let (poses, places) = self.poses(offset_s, reach_s + 2.0 * self.interval_s);
         Ok(match self.problem.weighing {
             Weighing::Drifting => {
                 let settled = Settled::of(poses, self.problem.mount, self.problem.noise)?;

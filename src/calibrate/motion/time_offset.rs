@@ -10,6 +10,8 @@ use crate::geometry::{Rigid, se3, stats};
 /// A pose with its time, s.
 pub type Timed = (f64, Rigid);
 
+/// Speeds are those over about so long a time, s: a robot turns by more than its noise, and not much faster at its end.
+const APART_S: f64 = 0.1;
 /// Fewer speeds than this are no curve.
 const MIN_SAMPLES: usize = 8;
 /// Of the shorter stream at least this part must lie within the other one.
@@ -60,7 +62,8 @@ pub fn coarse(flange: &[Timed], sensor: &[Timed]) -> Option<f64> {
     }
     let (first, last) =
         (of_flange[0].0 - of_sensor[of_sensor.len() - 1].0, of_flange[of_flange.len() - 1].0 - of_sensor[0].0);
-    let step_s = (0.5 * interval_s(flange).min(interval_s(sensor))).max((last - first) / as_float(MAX_TRIALS));
+    let finest_s = interval_s(flange).min(interval_s(sensor)).max(0.3 * APART_S);
+    let step_s = (0.5 * finest_s).max((last - first) / as_float(MAX_TRIALS));
     if !(step_s > 0.0 && step_s.is_finite()) {
         return None;
     }
@@ -79,12 +82,10 @@ pub fn coarse(flange: &[Timed], sensor: &[Timed]) -> Option<f64> {
     Some(if bend < 0.0 { best_s + 0.5 * step_s * (before - after) / bend } else { best_s })
 }
 
-/// Rotation speed (rad/s) in the middle of pairs of samples, far enough apart that a robot turns by more than its noise.
+/// Rotation speed (rad/s) in the middle of pairs of samples that are about `APART_S` apart.
 fn speeds(stream: &[Timed]) -> Vec<(f64, f64)> {
-    const APART_S: f64 = 0.1;
-    let interval_s = interval_s(stream);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "of a positive number")]
-    let apart = ((APART_S / interval_s).round() as usize).max(1);
+    let apart = ((APART_S / interval_s(stream)).round() as usize).max(1);
     let speed = |(start_s, start): &Timed, (end_s, end): &Timed| {
         let rotation: UnitQuaternion<f64> = start.rotation.inverse() * end.rotation;
         (0.5 * (start_s + end_s), rotation.angle() / (end_s - start_s))
@@ -132,7 +133,7 @@ fn as_float(count: usize) -> f64 {
 /// Each of the flange's poses has noise of its own. Between two of them the noise of the interpolated pose is smaller than at
 /// either, so that the cost ripples with the offset at the flange's interval; the least of it is pulled to between two samples,
 /// by many times σ where both streams tick in step. Costs that are whole intervals apart have the same share of the ripple, be
-/// the noise of neighbours independent or not.
+/// the noise of neighbours independent or not. What is left of it is chance, and small where the reach is many σ of the offset.
 pub(super) fn reach_s(flange: &[Timed]) -> f64 {
     /// Over this time a robot moves by far more than its noise, and its speed hardly changes.
     const WANTED_S: f64 = 0.03;
@@ -150,7 +151,7 @@ pub(super) fn reach_s(flange: &[Timed]) -> f64 {
 ///
 /// The minimum is where costs at `reach_s` before and after it are the same.
 pub(super) fn refined(start_s: f64, reach_s: f64, cost: impl Fn(f64) -> Option<f64>) -> Option<(f64, f64)> {
-    const MAX_STEPS: usize = 10;
+    const MAX_STEPS: usize = 6;
     let mut place_s = start_s;
     for _ in 0..MAX_STEPS {
         let (before, here, after) = (cost(place_s - reach_s)?, cost(place_s)?, cost(place_s + reach_s)?);

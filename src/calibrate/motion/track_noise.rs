@@ -19,7 +19,9 @@ const MIN_ROWS: usize = 6;
 /// A χ² with three degrees of freedom has this median.
 const MEDIAN: f64 = 2.366;
 /// A part of what is seen that is less than this cannot be told from the rest.
-const LEAST_SHARE: f64 = 0.01;
+const LEAST_SHARE: f64 = 0.1;
+/// The part of the scatter of translations that turns of the robot, through the lever, are taken to explain at most.
+const MOST_BY_LEVER: f64 = 0.9;
 /// Exact data keep a little noise, so that they can be weighed: of a step against what is stated, and mm² and rad² of the robot.
 const LEAST: [f64; 3] = [1e-8, 1e-10, 1e-16];
 
@@ -48,10 +50,13 @@ impl Track<'_> {
         let (Some(short), Some(long)) = (self.scatter(sensor, 1), self.scatter(sensor, self.steps_in_row())) else {
             return self.noise;
         };
-        let (rotation_factor, orientation) =
-            told_apart([short.seen[0], long.seen[0]], [short.by_orientation[0], long.by_orientation[0]]);
-        let left = [&short, &long].map(|of| (of.seen[1] - orientation * of.by_orientation[1]).max(LEAST[0]));
-        let (translation_factor, position) = told_apart(left, [short.by_position, long.by_position]);
+        // The robot's orientation, through the lever, cannot shift steps by more than is seen.
+        let most = MOST_BY_LEVER * short.seen[1] / short.by_orientation[1];
+        let by_orientation = |part: usize| [short.by_orientation[part], long.by_orientation[part]];
+        let (rotation_factor, orientation) = told_apart([short.seen[0], long.seen[0]], by_orientation(0), most);
+        let left = [&short, &long]
+            .map(|of| (of.seen[1] - orientation * of.by_orientation[1]).max((1.0 - MOST_BY_LEVER) * of.seen[1]));
+        let (translation_factor, position) = told_apart(left, [short.by_position, long.by_position], f64::INFINITY);
         TrackNoise {
             position: position.max(LEAST[1]),
             orientation: orientation.max(LEAST[2]),
@@ -112,9 +117,9 @@ fn summed_covariance(row: &[TrackPose]) -> Matrix6<f64> {
 }
 
 /// The factor on the camera's variance and the robot's variance from what is seen over short and long rows, which is the factor
-/// and the robot's variance times `by_robot`.
-fn told_apart(seen: [f64; 2], by_robot: [f64; 2]) -> (f64, f64) {
-    let of_robot = ((seen[0] - seen[1]) / (by_robot[0] - by_robot[1])).max(0.0);
+/// and the robot's variance, which is at most `most`, times `by_robot`.
+fn told_apart(seen: [f64; 2], by_robot: [f64; 2], most: f64) -> (f64, f64) {
+    let of_robot = ((seen[0] - seen[1]) / (by_robot[0] - by_robot[1])).max(0.0).min(most);
     // Over long rows errors count that change slowly, as those of a calibration do.
     let factor = (seen[1] - of_robot * by_robot[1]).max(LEAST_SHARE * seen[1]);
     if factor.is_finite() && of_robot.is_finite() { (factor, of_robot) } else { (1.0, 0.0) }

@@ -4,7 +4,7 @@
 //! said by an edge's own fit, is taken as it is; the rest begins in the proportions of usual machines and is found from the
 //! data as far as they tell it.
 
-use nalgebra::{Matrix2, Matrix3, Vector3};
+use nalgebra::Matrix2;
 
 use crate::calibrate::components::{Components, Found, NUM_COMPONENTS, PointModel};
 use crate::calibrate::{AboveStated, Mount, NoiseModel, PlateProblem, SolveError};
@@ -18,8 +18,6 @@ use super::points::{EdgePoint, NUM_UNKNOWNS, PlateState};
 const USUAL_STDS: [f64; NUM_COMPONENTS] = [0.03, 1e-4, 0.03];
 /// No robot and no profiler is better than this, mm: it keeps exact data weighable.
 const LEAST_STD_MM: f64 = 1e-4;
-/// Step (of a variance's logarithm) over which differences are taken.
-const DIFFERENCE: f64 = 1e-3;
 
 /// The noise that the weights stand for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,10 +28,8 @@ pub(super) struct PlateNoise {
     is_open: [bool; NUM_COMPONENTS],
     /// Whether what the profiles say of their points is to be found as well: the data refute it.
     are_profiles_open: bool,
-    /// Logarithms of the factors on what is open.
-    log_factors: Vector3<f64>,
-    /// Their covariance.
-    covariance: Matrix3<f64>,
+    /// What was found of what is open.
+    found: Found,
     is_stated: bool,
     mount: Mount,
     /// The scatter against what is stated.
@@ -49,8 +45,7 @@ impl PlateNoise {
             variances: [0, 1, 2].map(|idx| std(idx) * std(idx)),
             is_open: stated.map(|std| std.is_none()),
             are_profiles_open: false,
-            log_factors: Vector3::zeros(),
-            covariance: Matrix3::zeros(),
+            found: Found::nothing(),
             is_stated: stated[0].is_some() && stated[1].is_some(),
             mount: problem.mount,
             above_stated: None,
@@ -73,7 +68,7 @@ impl PlateNoise {
         measured
             .iter()
             .map(|measured| {
-                let covariance = self.model_of(measured, state).covariance(&self.log_factors);
+                let covariance = self.model_of(measured, state).covariance(&self.found.log_factors);
                 let information = covariance.try_inverse().unwrap_or_default();
                 EdgePoint { information, ..measured.point }
             })
@@ -91,12 +86,11 @@ impl PlateNoise {
         };
         let components = Components::new(measured.iter().map(|measured| self.model_of(measured, state)).collect());
         if components.is_any_open() {
-            let Found { log_factors, covariance } = components.fit(self.log_factors)?;
-            (self.log_factors, self.covariance) = (log_factors, covariance);
+            self.found = components.fit(self.found.log_factors)?;
         } else {
             #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 points")]
             let freedom = freedom as f64;
-            let chi_square = components.chi_square(&self.log_factors);
+            let chi_square = components.chi_square(&self.found.log_factors);
             let p_value = stats::chi_squared_p_value(chi_square, freedom);
             self.above_stated = Some(AboveStated { ratio: (chi_square / freedom).sqrt(), p_value });
         }
@@ -111,27 +105,13 @@ impl PlateNoise {
         &self,
         variance_by: impl Fn(&Self) -> Result<f64, SolveError>,
     ) -> Result<f64, SolveError> {
-        if self.covariance == Matrix3::zeros() {
-            return Ok(f64::INFINITY);
-        }
-        let mut slope = Vector3::zeros();
-        for idx in 0..NUM_COMPONENTS {
-            let at = |step: f64| {
-                let mut noise = *self;
-                noise.log_factors[idx] += step;
-                variance_by(&noise)
-            };
-            slope[idx] = (at(DIFFERENCE)? - at(-DIFFERENCE)?) / (2.0 * DIFFERENCE);
-        }
-        let variance = variance_by(self)?;
-        let spread = slope.dot(&(self.covariance * slope));
-        Ok(if spread > 0.0 { 2.0 * variance * variance / spread } else { f64::INFINITY })
+        self.found.degrees_of_freedom(|found| variance_by(&Self { found: *found, ..*self }))
     }
 
     /// For the reader.
     pub fn model(&self) -> NoiseModel {
         let std = |idx: usize| {
-            let factor = if self.is_open[idx] { self.log_factors[idx].exp() } else { 1.0 };
+            let factor = if self.is_open[idx] { self.found.log_factors[idx].exp() } else { 1.0 };
             (self.variances[idx] * factor).sqrt()
         };
         NoiseModel {
