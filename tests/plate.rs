@@ -501,7 +501,7 @@ fn held_out_mm(
             let mean = places.iter().sum::<Vec3>() / f64::from(u16::try_from(places.len()).expect("few"));
             stats::rms(places.iter().map(|place| (place - mean).norm()))
         }
-        Problem::Motion(_) => unreachable!("only balls, tips and plates are compared here"),
+        Problem::Motion(_) | Problem::Streams(_) => unreachable!("only balls, tips and plates are compared here"),
         Problem::Plate(plate) => {
             let line = |edge: Edge| {
                 let of_edge = plate.stations.iter().filter(|station| station.edge == edge);
