@@ -87,13 +87,8 @@ pub fn solve_streams(problem: &StreamProblem) -> Result<Solution, SolveError> {
         return streams.solve(None);
     }
     let start_s = coarse(&flange, &camera).unwrap_or(0.0);
-    match streams.offset(start_s)? {
-        Some(offset) => streams.solve(Some(offset)),
-        None => {
-            let clocks = TimeOffset { offset_s: start_s, std_s: None };
-            streams.solve(Some(Offset { clocks, change: Vector6::zeros() }))
-        }
-    }
+    let unknown = Offset { clocks: TimeOffset { offset_s: start_s, std_s: None }, change: Vector6::zeros() };
+    streams.solve(Some(streams.offset(start_s)?.unwrap_or(unknown)))
 }
 
 /// By how much the clocks differ, and what hangs on it.
