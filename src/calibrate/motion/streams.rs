@@ -87,17 +87,14 @@ pub fn solve_streams(problem: &StreamProblem) -> Result<Solution, SolveError> {
         return streams.solve(None);
     }
     let start_s = coarse(&flange, &camera).unwrap_or(0.0);
-    match streams.offset(start_s)? {
-        Some(offset) => streams.solve(Some(offset)),
-        None => streams.solve(Some(Offset { offset_s: start_s, std_s: None, change: Vector6::zeros() })),
-    }
+    let unknown = Offset { clocks: TimeOffset { offset_s: start_s, std_s: None }, change: Vector6::zeros() };
+    streams.solve(Some(streams.offset(start_s)?.unwrap_or(unknown)))
 }
 
 /// By how much the clocks differ, and what hangs on it.
 #[derive(Clone, Copy)]
 struct Offset {
-    offset_s: f64,
-    std_s: Option<f64>,
+    clocks: TimeOffset,
     /// How the calibration follows it: a right perturbation (rotation, translation) a second.
     change: Vector6<f64>,
 }
@@ -132,7 +129,7 @@ impl Streams<'_> {
                     let around = [-reach_s, reach_s].map(|step_s| minimum(offset_s + step_s));
                     let [Some((_, before)), Some((_, after))] = around else { return Ok(None) };
                     let change = se3::log(&(before.inverse() * after)) / (2.0 * reach_s);
-                    latest = Some(Offset { offset_s, std_s: Some(std_s), change });
+                    latest = Some(Offset { clocks: TimeOffset { offset_s, std_s: Some(std_s) }, change });
                     // Weights and lost steps are those of the start.
                     if (offset_s - start_s).abs() < std_s {
                         break;
@@ -234,18 +231,18 @@ impl Streams<'_> {
     }
 
     fn solve(&self, offset: Option<Offset>) -> Result<Solution, SolveError> {
-        let offset_s = offset.map_or(0.0, |offset| offset.offset_s);
+        let offset_s = offset.map_or(0.0, |offset| offset.clocks.offset_s);
         let (poses, places) = self.poses(offset_s, 0.0);
         let mut solution = match self.problem.weighing {
             Weighing::Drifting => Settled::of(poses, self.problem.mount, self.problem.noise)?
                 .into_solution(self.problem.reference_distance_mm, &places)?,
             Weighing::Independent => super::solve(&self.as_targets(&poses, &places))?,
         };
-        let Some(Offset { offset_s, std_s, change }) = offset else { return Ok(solution) };
+        let Some(Offset { clocks, change }) = offset else { return Ok(solution) };
         if let Some(motion) = &mut solution.motion {
-            motion.time_offset = Some(TimeOffset { offset_s, std_s });
+            motion.time_offset = Some(clocks);
         }
-        match std_s {
+        match clocks.std_s {
             // What is not known of the offset is not known of the calibration.
             Some(std_s) => {
                 let sensor = solution.flange_from_sensor.rigid();
