@@ -59,7 +59,8 @@ pub fn at(stream: &[Timed], time_s: f64, longest_gap_s: f64) -> Option<Rigid> {
     let at_end = se3::right_jacobian(&whole).lu().solve(&at_end)?;
     let share = (time_s - start_s) / interval_s;
     let [square, cube] = [share.powi(2), share.powi(3)];
-    let twist = at_start * (cube - 2.0 * square + share) + whole * (3.0 * square - 2.0 * cube) + at_end * (cube - square);
+    let twist =
+        at_start * (cube - 2.0 * square + share) + whole * (3.0 * square - 2.0 * cube) + at_end * (cube - square);
     Some(start * se3::exp(&twist))
 }
 

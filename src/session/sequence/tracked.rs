@@ -6,18 +6,12 @@ use std::sync::Arc;
 use nalgebra::Matrix6;
 
 use crate::calibrate::motion::{CameraPose, StreamProblem, Weighing};
-use crate::geometry::se3;
 use crate::odometry::{Evaluation, OdometryOptions, Tracking, Travel};
 use crate::watch::{Cancelled, Watch};
 
 use super::super::Session;
 use super::{FrameRecord, Sequence, SequenceRun};
 
-/// Poses nearer in time are passed over, s: the steps of neighbouring frames share the errors of their keyframe, so that many
-/// of them would seem to know more than they do; and over a short step a robot turns hardly more than its noise.
-const SPACING_S: f64 = 0.25;
-/// Of a short sequence every pose is needed.
-const FEW_POSES: usize = 12;
 /// Over a gap nothing is known of the motion, rad² and mm².
 const UNKNOWN: f64 = 1e9;
 
@@ -95,42 +89,35 @@ impl TrackedSequence {
     #[must_use]
     pub fn streams(&self, session: &Session) -> Option<StreamProblem> {
         let flange = self.sequence.flange.as_ref()?;
-        let mut camera = camera_poses(&self.records, SPACING_S);
-        if camera.len() < FEW_POSES {
-            camera = camera_poses(&self.records, 0.0);
-        }
         Some(StreamProblem {
             mount: session.mount,
             noise: session.robot.noise(),
             reference_distance_mm: session.sensor.reference_distance_mm,
             flange: flange.iter().map(|pose| (pose.time_s, pose.base_from_flange)).collect(),
-            camera,
+            camera: camera_poses(&self.records),
             weighing: Weighing::Drifting,
             find_offset: true,
         })
     }
 }
 
-/// Poses at least so far apart in time, each with what the steps that lead to it may be off by.
-fn camera_poses(records: &[FrameRecord], spacing_s: f64) -> Vec<CameraPose> {
-    let mut poses: Vec<CameraPose> = Vec::new();
-    let mut since = Matrix6::zeros();
-    for record in records {
-        let Ok(summary) = &record.outcome else { continue };
-        let Some(world_from_sensor) = summary.world_from_sensor else { continue };
-        match &summary.tracking {
-            Tracking::Tracked(motion) => {
-                let by_sensor = se3::adjoint(&motion.sensor_from_previous);
-                since = by_sensor * since * by_sensor.transpose() + motion.covariance_in_sensor();
-            }
-            _ => since = Matrix6::identity() * UNKNOWN,
-        }
-        // A hair of patience, as times are rounded.
-        if poses.last().is_none_or(|last| record.time_s - last.time_s > spacing_s - 1e-3) {
-            let step_covariance = (!poses.is_empty()).then_some(since);
-            poses.push(CameraPose { time_s: record.time_s, world_from_sensor, step_covariance });
-            since = Matrix6::zeros();
-        }
-    }
-    poses
+/// The poses, each with what the step that leads to it may be off by.
+fn camera_poses(records: &[FrameRecord]) -> Vec<CameraPose> {
+    let tracked = records.iter().filter_map(|record| Some((record, record.outcome.as_ref().ok()?)));
+    let posed = tracked.filter_map(|(record, summary)| {
+        let step_covariance = match &summary.tracking {
+            Tracking::Tracked(motion) => Some(motion.covariance_in_sensor()),
+            _ => None,
+        };
+        Some((record.time_s, summary.world_from_sensor?, step_covariance))
+    });
+    posed
+        .enumerate()
+        .map(|(place, (time_s, world_from_sensor, step_covariance))| {
+            // Nothing is known of the motion over a gap; no step leads to the first pose.
+            let over_gap = || Matrix6::identity() * UNKNOWN;
+            let step_covariance = (place > 0).then(|| step_covariance.unwrap_or_else(over_gap));
+            CameraPose { time_s, world_from_sensor, step_covariance }
+        })
+        .collect()
 }
