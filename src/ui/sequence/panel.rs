@@ -10,6 +10,7 @@ use crate::app::workbench::sequence::{FramePictures, SequenceBench, SequenceComm
 use crate::odometry::{DepthImage, Match};
 use crate::session::sequence::Sequence;
 use crate::text::sequence as words;
+use crate::ui::eye::Eye;
 use crate::ui::save_picture::saveable;
 use crate::ui::{PanelContext, theme, widgets};
 
@@ -18,7 +19,7 @@ use super::model::{Model, Values};
 use super::over_time::{Curve, OverTime};
 use super::picture::{Distances, Picture, Pixel, Scene, Shown, Way, distances_image};
 use super::player::Player;
-use super::trajectory::{self as way, Eye};
+use super::trajectory as way;
 
 /// The part of what is left that picture and way take.
 const UPPER_PART: f32 = 0.56;
@@ -67,7 +68,7 @@ impl Default for SequenceState {
             player: Player::following(),
             shown: Shown::default(),
             way_view: WayView::default(),
-            eye: Eye::default(),
+            eye: Eye::new(way::AT_FIRST),
             picture: Picture::default(),
             is_plan_fitted: true,
             are_curves_fitted: true,
