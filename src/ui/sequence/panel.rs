@@ -142,10 +142,9 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut SequenceSta
         context.commands.push(Command::Sequence(SequenceCommand::Look(frame_idx)));
     }
     let area = ui.available_rect_before_wrap();
-    let (top, rest) = area.split_top_bottom_at_y(area.top() + controls::HEIGHT);
-    let mut top = ui.new_child(UiBuilder::new().max_rect(top));
-    controls::card(&mut top, context, sequence, &model.times_s, &mut state.player, &mut state.options);
-    let rest = rest.with_min_y(rest.top() + theme::GAP);
+    let mut top = ui.new_child(UiBuilder::new().max_rect(area));
+    controls::card(&mut top, context, sequence, &model, &mut state.player, &mut state.options);
+    let rest = area.with_min_y(top.min_rect().bottom() + theme::GAP);
     let mut rest_ui = ui.new_child(UiBuilder::new().max_rect(rest));
     rest_ui.spacing_mut().item_spacing = vec2(theme::GAP, theme::GAP);
     cards(&mut rest_ui, rest, sequence, bench, &model, state);
