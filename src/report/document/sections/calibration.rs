@@ -23,9 +23,11 @@ fn rotation_decimals(solution: &Solution) -> usize {
 pub(in crate::report::document) fn blocks(evidence: &Evidence) -> Vec<Block> {
     let Some((target, solution)) = evidence.answer() else { return Vec::new() };
     let convention = target.session.robot.notation.convention;
+    let is_camera = solution.motion.is_some();
+    let sensor_frame = if is_camera { words::CAMERA_FRAME } else { words::SENSOR_FRAME };
     let mut blocks = vec![
         Block::Paragraph(words::meaning(solution.mount).to_owned()),
-        Block::Paragraph(words::SENSOR_FRAME.to_owned()),
+        Block::Paragraph(sensor_frame.to_owned()),
         Block::Table(matrix(solution)),
         Block::Table(quaternion(solution)),
         Block::Table(six_numbers(&target.session, solution)),

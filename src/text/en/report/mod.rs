@@ -145,7 +145,9 @@ pub const fn meaning(mount: Mount) -> &'static str {
     }
 }
 
-/// The sensor's frame in words.
+/// A camera's frame in words.
+pub const CAMERA_FRAME: &str = "Sensor frame: that of the camera, as the program has it that found the target: usually z along the optical axis, x to the right and y down in the image. Lengths are millimetres.";
+/// A profiler's frame in words.
 pub const SENSOR_FRAME: &str = "Sensor frame: the laser plane is y = 0, x runs across the line, z along the range axis, y completes a right-handed frame. Lengths are millimetres.";
 /// How many digits are printed.
 pub const DIGITS: &str =
@@ -232,6 +234,8 @@ pub const SENSOR: &str = "Sensor";
 /// Name of a fact.
 pub const SENSOR_NOISE: &str = "Noise of a profile point, stated";
 /// Name of a fact.
+pub const TARGET_NOISE: &str = "Noise of the seen target, stated";
+/// Name of a fact.
 pub const REFERENCE_DISTANCE: &str = "Accuracy stated at";
 /// Name of a fact.
 pub const MOUNT: &str = "Sensor mounted";
@@ -260,9 +264,9 @@ pub const RADIUS_NOT_USED: &str = "not used, as the readings are centres already
 /// A noise that the session does not hold.
 pub const ESTIMATED: &str = "not stated; estimated from the data, see “Validation”";
 
-/// The robot's noise; `is_estimated` where the report tells what the data show of it.
+/// The noise of poses; `is_estimated` where the report tells what the data show of it.
 #[must_use]
-pub fn robot_noise(position_mm: Option<f64>, orientation_deg: Option<f64>, is_estimated: bool) -> String {
+pub fn pose_noise(position_mm: Option<f64>, orientation_deg: Option<f64>, is_estimated: bool) -> String {
     match (position_mm, orientation_deg) {
         (None, None) => if is_estimated { ESTIMATED } else { NOT_STATED }.to_owned(),
         (position, orientation) => {
