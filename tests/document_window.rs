@@ -14,7 +14,7 @@ use handeye::app::{Command, Document, RecoverySettings, Workbench};
 use handeye::calibrate::Mount;
 use handeye::geometry::Vec3;
 use handeye::session::{self, Edit, Session, SetupField, Target, samples};
-use handeye::text::{document as words, shell as shell_words, start as start_words};
+use handeye::text::{document as words, import as import_words, shell as shell_words, start as start_words};
 use handeye::ui::{Start, Step, Window};
 
 type Handeye = Harness<'static, Window>;
@@ -466,4 +466,25 @@ fn keys_answer_the_question_that_waits_and_nothing_below_it() {
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     settle(&mut harness);
     assert_ne!(document(&harness).session.notes, "mine");
+}
+
+#[test]
+fn a_session_of_a_board_is_begun_and_says_how_its_pairs_come_in() {
+    let mut harness = window_with(Start::default());
+    click(&mut harness, &start_words::preset(start_words::BOARD, false, 15.0));
+    assert!(document(&harness).session.target.is_pose());
+    // At the poses, where a new session begins, and in its overview.
+    for step in [Step::Poses, Step::Arcs, Step::Session] {
+        harness.state_mut().shell_mut().go_to(step);
+        settle(&mut harness);
+        assert!(harness.query_by_label(import_words::PAIRS).is_some(), "{step:?}");
+    }
+    let rotation_std = start_words::field_name(start_words::TARGET_ROTATION_STD, "°");
+    retype(&mut harness, &rotation_std, "0,1");
+    harness.key_press(Key::Enter);
+    settle(&mut harness);
+    let expected = Target::Pose { translation_std_mm: None, rotation_std_deg: Some(0.1) };
+    assert_eq!(document(&harness).session.target, expected);
+    let profile_std = start_words::field_name(start_words::PROFILE_STD, "mm");
+    assert!(harness.query_by_label(&profile_std).is_none(), "a camera sees no profiles");
 }

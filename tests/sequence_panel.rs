@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use handeye::app::Command;
 use handeye::app::workbench::sequence::{SequenceCommand, TrackOptions};
+use handeye::app::{Command, NoticeKind};
 use handeye::calibrate::Method;
 use handeye::odometry::Estimator;
 use handeye::session;
@@ -123,6 +123,15 @@ fn a_folder_becomes_a_session_beside_it() {
     apply(&mut harness, Command::Save);
     let saved = session::load(&folder.path().join("walk.json")).expect("saved beside the folder");
     assert!(matches!(saved.target, session::Target::Rgbd { sequence } if sequence == "walk"));
+}
+
+#[test]
+fn a_folder_that_is_no_sequence_says_what_it_lacks() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let command = Command::to_open_sequence(folder.path());
+    assert!(matches!(&command, Command::Tell(NoticeKind::Error, said) if said.contains("camera.json")), "{command:?}");
+    let sequence = sample().with_file_name("room-on-robot-sequence");
+    assert_eq!(Command::to_open_sequence(&sequence), Command::Open(sequence));
 }
 
 #[test]

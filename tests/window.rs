@@ -71,6 +71,8 @@ fn the_start_page_shows_every_sample() {
     for sample in samples::ALL {
         harness.get_by_label(&open_sample(sample_lesson(sample.file_name).0));
     }
+    // Tests run where the recorded sequence is.
+    harness.get_by_label(&open_sample(start_words::SEQUENCE_LESSON.0));
 }
 
 #[test]

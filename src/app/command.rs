@@ -10,6 +10,7 @@ use crate::report::document::Options;
 use crate::session::import::ImportOptions;
 use crate::session::sequence::CAMERA_FILE;
 use crate::session::{Edit, Target};
+use crate::text::sequence as words;
 use crate::verify::Calibration;
 
 use super::cell::CellCommand;
@@ -30,11 +31,26 @@ impl Command {
             }
         }
     }
+
+    /// Opens the folder of an RGB-D sequence; of any other folder it says what is missing.
+    #[must_use]
+    pub fn to_open_sequence(folder: &Path) -> Self {
+        if is_sequence(folder) {
+            Self::Open(folder.to_owned())
+        } else {
+            Self::Tell(NoticeKind::Error, words::no_sequence(&folder.display().to_string()))
+        }
+    }
 }
 
-/// Sessions are JSON; of a file without an ending nothing else is known. A folder with a camera's file is a sequence.
+/// A folder with a camera's file.
+fn is_sequence(folder: &Path) -> bool {
+    folder.join(CAMERA_FILE).is_file()
+}
+
+/// Sessions are JSON; of a file without an ending nothing else is known. A sequence is opened as one.
 fn names_a_session(path: &Path) -> bool {
-    if path.join(CAMERA_FILE).is_file() {
+    if is_sequence(path) {
         return true;
     }
     match path.extension() {

@@ -7,7 +7,8 @@ use crate::scene::PartKind;
 use crate::session::{Capture, Reading};
 use crate::text::{
     capture as capture_words, compare_results as compare_words, document as document_words, import as import_words,
-    report_panel as report_words, shell as words, verify as verify_words, workpiece as workpiece_words,
+    report_panel as report_words, sequence as sequence_words, shell as words, verify as verify_words,
+    workpiece as workpiece_words,
 };
 
 use super::rail::Step;
@@ -17,6 +18,8 @@ use super::rail::Step;
 pub enum Action {
     /// Asks for a file and opens it.
     Open,
+    /// Asks for the folder of an RGB-D sequence and opens it.
+    OpenSequence,
     /// Opens a sample.
     OpenSample(usize),
     /// Asks for files of poses or profiles and shows the import's preview.
@@ -101,7 +104,8 @@ impl Action {
             Self::Help => (Modifiers::NONE, Key::F1),
             Self::Import => (Modifiers::COMMAND, Key::I),
             // Pasting has a key too, but the system turns that into the text itself.
-            Self::OpenSample(_)
+            Self::OpenSequence
+            | Self::OpenSample(_)
             | Self::GoTo(_)
             | Self::ImportFolder
             | Self::Paste
@@ -128,6 +132,7 @@ impl Action {
         let history = workbench.document().map(|document| &document.history);
         match self {
             Self::Open => words::OPEN.to_owned(),
+            Self::OpenSequence => sequence_words::OPEN_FOLDER.to_owned(),
             Self::OpenSample(_) => words::OPEN_SAMPLE.to_owned(),
             Self::Import => import_words::IMPORT.to_owned(),
             Self::ImportFolder => import_words::IMPORT_FOLDER.to_owned(),
@@ -186,6 +191,7 @@ impl Action {
             Self::Practise(_) => workbench.cell().is_practice.then_some(capture_words::PRACTICE),
             Self::EndPractice => (!workbench.cell().is_practice).then_some(capture_words::NO_PRACTICE),
             Self::Open
+            | Self::OpenSequence
             | Self::OpenSample(_)
             | Self::Import
             | Self::ImportFolder

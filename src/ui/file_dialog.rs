@@ -20,6 +20,8 @@ const FASTEST_CANCEL: Duration = Duration::from_millis(500);
 pub enum Purpose {
     /// Choosing a session to open.
     Open,
+    /// Choosing the folder of an RGB-D sequence to open.
+    SequenceFolder,
     /// Choosing a file to save the session to.
     Save,
     /// Choosing files of poses and profiles.
@@ -66,6 +68,7 @@ impl Purpose {
     pub const fn title(self) -> &'static str {
         match self {
             Self::Open => words::OPEN,
+            Self::SequenceFolder => sequence_words::OPEN_FOLDER_TITLE,
             Self::Save => words::SAVE_AS_TITLE,
             Self::ImportFiles | Self::ImportFolder => import_words::IMPORT_PATH_TITLE,
             Self::AddSession => import_words::ADD_SESSION_PATH_TITLE,
@@ -89,7 +92,7 @@ impl Purpose {
     #[must_use]
     pub const fn button(self) -> &'static str {
         match self {
-            Self::Open | Self::OpenPoints => words::OPEN,
+            Self::Open | Self::SequenceFolder | Self::OpenPoints => words::OPEN,
             Self::Calibration => workpiece_words::USE_BUTTON,
             Self::Save | Self::ToolFrame | Self::Picture | Self::SequenceFile | Self::ReportFolder => words::SAVE,
             Self::ImportFiles | Self::ImportFolder | Self::AddSession => import_words::IMPORT_BUTTON,
@@ -198,7 +201,8 @@ fn ask(purpose: Purpose, suggested_name: &str) -> Answer {
         Purpose::ToolFrame | Purpose::Picture | Purpose::SequenceFile => {
             all(dialog).set_file_name(suggested_name).save_file().map(one)
         }
-        Purpose::ImportFolder
+        Purpose::SequenceFolder
+        | Purpose::ImportFolder
         | Purpose::ExportProfiles
         | Purpose::WatchedFolder
         | Purpose::ReportFolder

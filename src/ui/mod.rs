@@ -11,6 +11,7 @@ pub mod cloud;
 pub mod compare;
 pub mod diagnosis;
 pub mod dialogs;
+pub mod eye;
 pub mod file_dialog;
 pub mod history;
 pub mod import;

@@ -37,6 +37,7 @@ pub fn show(ui: &mut Ui, workbench: &Workbench, persisted: &mut Persisted, actio
 fn menus(ui: &mut Ui, workbench: &Workbench, persisted: &mut Persisted, actions: &mut Vec<Action>) {
     MenuButton::new(words::FILE).ui(ui, |ui| {
         item(ui, workbench, Action::Open, actions);
+        item(ui, workbench, Action::OpenSequence, actions);
         ui.menu_button(words::OPEN_SAMPLE, |ui| {
             for (idx, sample) in samples::ALL.iter().enumerate() {
                 if ui.button(sample_lesson(sample.file_name).0).clicked() {

@@ -90,9 +90,6 @@ pub const fn point_reading(target: &Target) -> &'static str {
         Target::RightAnglePlate => {
             "This station holds a point on an edge that was already reduced elsewhere; there is no profile to look at."
         }
-        Target::Pose { .. } => {
-            "This station holds the target's pose, which was found in an image elsewhere; there is no profile to look at."
-        }
         Target::Point => "This station holds a tip that was already reduced elsewhere; there is no profile to look at.",
         _ => "This station holds a ball centre that was already reduced elsewhere; there is no profile to look at.",
     }
@@ -353,7 +350,6 @@ pub fn point_coordinates(target: &Target, x: &str, y: &str, z: &str) -> String {
     let name = match target {
         Target::RightAnglePlate => "point",
         Target::Point => "tip",
-        Target::Pose { .. } => "target",
         _ => "ball",
     };
     format!("{name} in sensor: ({x}, {y}, {z}) mm")

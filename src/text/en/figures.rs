@@ -265,6 +265,9 @@ pub const FLANGE: &str = "flange at each station";
 /// Legend of laser planes.
 pub const LASER_PLANE: &str = "laser plane";
 
+/// Legend of lines from the camera to the target.
+pub const LINE_OF_SIGHT: &str = "line of sight";
+
 /// Legend of the target; `is_point` where only one place of it is known.
 #[must_use]
 pub const fn target(target: &Target, is_point: bool) -> &'static str {
@@ -279,15 +282,14 @@ pub const fn target(target: &Target, is_point: bool) -> &'static str {
     }
 }
 
-/// Caption of the sketch.
+/// Caption of the sketch; of a camera that sees a board or marker, or of a profiler.
 #[must_use]
-pub fn setup_title(target: &str, num_stations: usize, is_fixed: bool) -> String {
+pub fn setup_title(target: &str, num_stations: usize, is_fixed: bool, is_camera: bool) -> String {
+    let (sensor, rays) = if is_camera { ("camera", "lines of sight") } else { ("sensor", "laser planes") };
     if is_fixed {
-        format!("The set-up: fixed sensor, {num_stations} poses of the flange with the {target}, without perspective")
+        format!("The set-up: fixed {sensor}, {num_stations} poses of the flange with the {target}, without perspective")
     } else {
-        format!(
-            "The set-up: base, {num_stations} stations with their laser planes, and the {target}, without perspective"
-        )
+        format!("The set-up: base, {num_stations} stations with their {rays}, and the {target}, without perspective")
     }
 }
 

@@ -22,6 +22,15 @@ pub const PASTE: &str = "Paste a table of poses";
 pub const PASTE_HINT: &str = "Copy the table in a spreadsheet, a robot program or a paper; then press this, or Ctrl+V";
 /// The keys.
 pub const PASTE_KEYS: &str = "Ctrl+V";
+/// What a session of a board or marker without stations lacks.
+pub const PAIRS_TITLE: &str = "No pairs of poses yet";
+/// What they are.
+pub const PAIRS_HINT: &str = "Import pairs of poses (CSV): in each row the flange in the base, as the robot reports it, and the board or marker in the camera, as the vision software finds it. Ten or more, turned about two axes; the JSON of moveit_calibration is read as well.";
+/// Button.
+pub const PAIRS: &str = "Import pairs of poses (CSV)…";
+/// The columns, on hover.
+pub const PAIRS_COLUMNS: &str =
+    "x, y, z and the orientation of the flange, then the same of the target with “target_” in front of the names";
 /// Beside the buttons.
 pub const PASTE_KEY: &str = "Ctrl+V pastes as well";
 /// What the button does.
@@ -39,7 +48,7 @@ pub const NO_PROFILES: &str = "This session holds points only, no profiles.";
 /// Reason of a disabled entry.
 pub const NO_STATIONS: &str = "This session has no stations.";
 /// Under the path field of the start page.
-pub const ENTRY_HINT: &str = "Poses or profiles from elsewhere:";
+pub const ENTRY_HINT: &str = "Poses, profiles or images from elsewhere:";
 
 /// The file filter's name.
 pub const IMPORT_FILTER: &str = "Poses and profiles";

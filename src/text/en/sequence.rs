@@ -22,6 +22,21 @@ pub const FEATURES_AXIS: &str = "features";
 /// Title of the axis of computing time.
 pub const DURATION_AXIS: &str = "ms a frame";
 
+/// Menu entry and button.
+pub const OPEN_FOLDER: &str = "Open an RGB-D sequence folder…";
+/// What it does.
+pub const OPEN_FOLDER_HINT: &str = "The images of an RGB-D camera in the TUM format, with a camera.json: finds the camera's motion, and with the robot's poses beside them (flange.txt) its mounting";
+/// Heading where the path is typed.
+pub const OPEN_FOLDER_TITLE: &str = "Open the folder of an RGB-D sequence";
+
+/// A folder that is no sequence.
+#[must_use]
+pub fn no_sequence(folder: &str) -> String {
+    format!(
+        "{folder}: found no camera.json, needed the folder of a sequence in the TUM format and, beside its lists, a camera.json with width, height, fx, fy, cx, cy of its cameras"
+    )
+}
+
 /// In place of a value.
 pub const NO_VALUE: &str = "–";
 /// The way from the images.

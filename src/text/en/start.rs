@@ -5,9 +5,9 @@ use crate::session::{FurtherTarget, Known, Target};
 use crate::text::digits;
 
 /// Heading of the start page.
-pub const TITLE: &str = "Calibrate a laser profiler on a robot";
+pub const TITLE: &str = "Calibrate a laser profiler or a camera on a robot";
 /// What this is about, in a sentence.
-pub const LEAD: &str = "A ball, a right-angled plate or a pin's tip, a handful of robot poses and the profiles seen from them give the sensor's place on the flange. Open a session of yours, or learn with a sample.";
+pub const LEAD: &str = "A ball, a right-angled plate or a pin's tip, a handful of robot poses and the profiles seen from them give the sensor's place on the flange; a camera needs the poses of a board, or its images alone. Open a session of yours, or learn with a sample.";
 /// Heading.
 pub const SAMPLES: &str = "Samples";
 /// Heading.
@@ -58,6 +58,10 @@ pub fn sample_lesson(file_name: &str) -> (&'static str, &'static str) {
         "tip.json" => {
             ("Touched tip", "A pin's point met from all sides, and touched: the simplest target, and a judge")
         }
+        "poses.json" => (
+            "Poses of a board",
+            "A camera sees a board whole: AX = XB from pairs of poses, and the one that is wrong is named",
+        ),
         "workpiece.json" => {
             ("Scanned workpieces", "A square block and teeth: measured sizes show what a calibration is worth")
         }
@@ -66,6 +70,26 @@ pub fn sample_lesson(file_name: &str) -> (&'static str, &'static str) {
         }
         _ => ("Sample", "A sample session"),
     }
+}
+
+/// Name and one-line lesson of the recorded sequence.
+pub const SEQUENCE_LESSON: (&str, &str) = (
+    "RGB-D camera on a robot",
+    "No target at all: the camera's motion from its images, held against the robot's, gives the mounting",
+);
+/// Where it is not beside the program.
+pub const NO_SAMPLE_SEQUENCE: &str = "The recorded RGB-D sequence is too large to be carried: it is among the sample sessions of the source. “handeye simulate --target room --out walk.json” makes another.";
+
+/// Sizes of a session of a board.
+#[must_use]
+pub fn sizes_of_boards(num_poses: usize) -> String {
+    super::shell::count(num_poses, "pair") + " of poses"
+}
+
+/// Sizes of a sequence.
+#[must_use]
+pub fn sizes_of_sequence(num_frames: usize) -> String {
+    super::shell::count(num_frames, "frame") + ", colour and depth"
 }
 
 /// Sizes of a session.
@@ -101,6 +125,12 @@ pub const NO_NAME: &str = "no name";
 pub const BALL_RADIUS: &str = "ball radius";
 /// Row.
 pub const BALL_RADIUS_STD: &str = "radius, 1σ";
+/// Row: how well the place of a board is seen.
+pub const TARGET_TRANSLATION_STD: &str = "seen place, 1σ";
+/// Row: how well its orientation is seen.
+pub const TARGET_ROTATION_STD: &str = "seen angle, 1σ";
+/// Hint in an empty field of what the method finds by itself.
+pub const FOUND_FROM_DATA: &str = "from data";
 /// Row: where the tip is, touched with a calibrated tool.
 pub const TOUCHED_POINT: &str = "touched at";
 /// Hint in the empty field.
@@ -172,6 +202,17 @@ pub const BALL: &str = "ball";
 pub const PLATE: &str = "right-angle plate";
 /// Kind of target.
 pub const POINT: &str = "point";
+/// Kind of target.
+pub const BOARD: &str = "board or marker";
+/// How a target is measured.
+pub const BALL_HINT: &str = "Profiles of a ball from several orientations; sweeps across it are best";
+/// How a target is measured.
+pub const PLATE_HINT: &str = "Profiles across the two edges of a right-angled plate";
+/// How a target is measured.
+pub const POINT_HINT: &str = "Profiles across the tip of a pin that stays where it is";
+/// How a target is measured.
+pub const BOARD_HINT: &str =
+    "A camera that sees the whole pose of a board or marker; pairs of poses are imported as CSV";
 /// Before the targets to begin a session for.
 pub const NEW_SESSION: &str = "Or begin a new session, measured on";
 /// Before the field for a ball's radius.
@@ -210,11 +251,21 @@ pub const REFERENCE_DISTANCE: &str = "accuracy stated at";
 /// Row.
 pub const TARGET: &str = "target";
 /// Row.
-pub const MOUNT: &str = "sensor mounted";
+pub const MOUNT: &str = "mounted";
 /// Row.
 pub const STATIONS: &str = "stations";
 /// Row.
 pub const CAPTURES: &str = "captures";
+/// Row.
+pub const FRAMES: &str = "frames";
+/// Value of what is still in its folder.
+pub const NOT_READ: &str = "not read";
+/// Row: the true poses of a sequence.
+pub const GROUND_TRUTH: &str = "ground truth";
+/// Row: the poses of the robot that carries the camera.
+pub const FLANGE_POSES: &str = "robot's poses";
+/// Value of what a sequence's folder has.
+pub const IN_FOLDER: &str = "in the folder";
 /// Row.
 pub const TRUTH: &str = "truth";
 /// Row.
@@ -255,6 +306,12 @@ pub fn captures(num_profiles: usize, num_points: usize) -> String {
         (0, points) => count(points, "reduced point"),
         (profiles, points) => format!("{}, {}", count(profiles, "profile"), count(points, "reduced point")),
     }
+}
+
+/// Poses of a board or marker.
+#[must_use]
+pub fn board_poses(number: usize) -> String {
+    format!("{} of the target", super::shell::count(number, "pose"))
 }
 
 /// What was measured.

@@ -14,7 +14,7 @@ use crate::text::arcs as text;
 use crate::text::edges::feature_name;
 use crate::text::typeset::std_text;
 use crate::ui::save_picture::saveable;
-use crate::ui::{PanelContext, Selection, theme, widgets};
+use crate::ui::{PanelContext, Selection, import, theme, widgets};
 
 use super::list::Columns;
 use super::model::{self, CaptureView, StationRow};
@@ -122,7 +122,11 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut ArcsState) 
     let results = workbench.results();
     let rows = state.rows(document, results);
     if rows.is_empty() {
-        widgets::nothing(ui, text::NO_STATIONS);
+        if document.session.target.is_pose() {
+            import::no_pairs(ui, context.actions);
+        } else {
+            widgets::nothing(ui, text::NO_STATIONS);
+        }
         return;
     }
     let selection = &mut *context.selection;
@@ -208,6 +212,12 @@ fn plots(
     state: &mut ArcsState,
     hovered_in_list: Option<usize>,
 ) {
+    let height = ui.available_height();
+    if document.session.target.is_pose() {
+        // The camera's software has seen the images; what is left to look at is where the boards were.
+        points_card(ui, height, &document.session.target, rows, selection, &mut state.is_curve_fitted);
+        return;
+    }
     let station = &rows[selection.station_idx];
     let sweep = results.and_then(|results| sweep_of(&results.methods, selection.station_idx)).map(|(_, sweep)| sweep);
     let shown_capture = state

@@ -9,7 +9,7 @@ use crate::session::table::has_cell;
 use crate::text::conventions::poses_title;
 use crate::text::poses as words;
 use crate::ui::widgets::card_with_height;
-use crate::ui::{PanelContext, theme};
+use crate::ui::{PanelContext, import, theme};
 
 use super::checks::Checks;
 use super::convention::{self, ConventionState};
@@ -62,6 +62,10 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut PosesState)
         let changes = context.commands.split_off(num_commands);
         state.sheet.commit(context.commands);
         context.commands.extend(changes);
+    }
+    if document.session.target.is_pose() && document.session.stations.is_empty() {
+        import::no_pairs(ui, context.actions);
+        return;
     }
     show_table(ui, context, document, state);
 }

@@ -13,27 +13,25 @@ use crate::ui::file_dialog::Purpose;
 use crate::ui::save_file::{self, SaveFile};
 use crate::ui::{PanelContext, theme, widgets};
 
+use super::model::Model;
 use super::player::Player;
 
-/// Height of the card, points: three rows.
-pub(super) const HEIGHT: f32 = 100.0;
 /// Periods that make sense, s.
 const PERIODS_S: std::ops::RangeInclusive<f64> = 0.0..=60.0;
 
-/// Buttons, slider and what is known of the frame; how the sequence is tracked and what came of it.
+/// Buttons, slider and what is known of the frame; how the sequence is tracked and what came of it. As high as that needs.
 pub(super) fn card(
     ui: &mut Ui,
     context: &mut PanelContext<'_>,
     sequence: &Sequence,
-    times_s: &[f64],
+    model: &Model,
     player: &mut Player,
     typed: &mut Option<TrackOptions>,
 ) {
     const OPTIONS_WIDTH: f32 = 330.0;
-    widgets::card_with_height(
+    widgets::card(
         ui,
         "",
-        HEIGHT,
         |_| {},
         |ui| {
             egui::Frame::new().inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
@@ -41,12 +39,12 @@ pub(super) fn card(
                 ui.horizontal(|ui| {
                     ui.set_min_height(28.0);
                     let width = (ui.available_width() - OPTIONS_WIDTH).max(160.0);
-                    player.show(ui, times_s, width);
+                    player.show(ui, &model.times_s, width);
                     ui.with_layout(Layout::right_to_left(Align::Center), |ui| options(ui, context, typed));
                 });
-                let sentence = frame_sentence(context.workbench.sequence(), sequence, times_s, player.frame_idx);
+                let sentence = frame_sentence(context.workbench.sequence(), sequence, &model.times_s, player.frame_idx);
                 ui.add(Label::new(&sentence).truncate());
-                ui.horizontal(|ui| summary(ui, context.workbench, sequence));
+                ui.horizontal(|ui| summary(ui, context.workbench, sequence, model));
             });
         },
     );
@@ -118,7 +116,7 @@ fn frame_sentence(bench: &SequenceBench, sequence: &Sequence, times_s: &[f64], f
 }
 
 /// What came of the sequence, and its files.
-fn summary(ui: &mut Ui, workbench: &Workbench, sequence: &Sequence) {
+fn summary(ui: &mut Ui, workbench: &Workbench, sequence: &Sequence, model: &Model) {
     let bench = workbench.sequence();
     let Some(tracked) = bench.tracked() else {
         if let Some(progress) = workbench.solve_progress() {
@@ -127,9 +125,8 @@ fn summary(ui: &mut Ui, workbench: &Workbench, sequence: &Sequence) {
         return;
     };
     let travel = tracked.records.iter().rev().find_map(|record| record.outcome.as_ref().ok()).map(|last| last.travel);
-    let with_pose = trajectory(&tracked.records).len();
     let text = words::summary(
-        with_pose,
+        model.ways.frames.len(),
         tracked.records.len(),
         travel.map(|travel| [travel.distance_mm / 1000.0, travel.turn_rad.to_degrees()]),
         tracked.evaluation.map(|found| [found.ate_rmse_mm, found.rpe_translation_rmse_mm]),
@@ -138,7 +135,7 @@ fn summary(ui: &mut Ui, workbench: &Workbench, sequence: &Sequence) {
         files(ui, tracked);
         ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
             let words = theme::dim(ui, text);
-            let response = ui.add(Label::new(words).truncate());
+            let response = ui.add(Label::new(words).wrap());
             if !sequence.notes.is_empty() {
                 let notes: Vec<String> = sequence.notes.iter().map(ToString::to_string).collect();
                 response.on_hover_text(notes.join("\n"));

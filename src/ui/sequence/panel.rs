@@ -10,6 +10,7 @@ use crate::app::workbench::sequence::{FramePictures, SequenceBench, SequenceComm
 use crate::odometry::{DepthImage, Match};
 use crate::session::sequence::Sequence;
 use crate::text::sequence as words;
+use crate::ui::eye::Eye;
 use crate::ui::save_picture::saveable;
 use crate::ui::{PanelContext, theme, widgets};
 
@@ -18,7 +19,7 @@ use super::model::{Model, Values};
 use super::over_time::{Curve, OverTime};
 use super::picture::{Distances, Picture, Pixel, Scene, Shown, Way, distances_image};
 use super::player::Player;
-use super::trajectory::{self as way, Eye};
+use super::trajectory as way;
 
 /// The part of what is left that picture and way take.
 const UPPER_PART: f32 = 0.56;
@@ -67,7 +68,7 @@ impl Default for SequenceState {
             player: Player::following(),
             shown: Shown::default(),
             way_view: WayView::default(),
-            eye: Eye::default(),
+            eye: Eye::new(way::AT_FIRST),
             picture: Picture::default(),
             is_plan_fitted: true,
             are_curves_fitted: true,
@@ -141,10 +142,9 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut SequenceSta
         context.commands.push(Command::Sequence(SequenceCommand::Look(frame_idx)));
     }
     let area = ui.available_rect_before_wrap();
-    let (top, rest) = area.split_top_bottom_at_y(area.top() + controls::HEIGHT);
-    let mut top = ui.new_child(UiBuilder::new().max_rect(top));
-    controls::card(&mut top, context, sequence, &model.times_s, &mut state.player, &mut state.options);
-    let rest = rest.with_min_y(rest.top() + theme::GAP);
+    let mut top = ui.new_child(UiBuilder::new().max_rect(area));
+    controls::card(&mut top, context, sequence, &model, &mut state.player, &mut state.options);
+    let rest = area.with_min_y(top.min_rect().bottom() + theme::GAP);
     let mut rest_ui = ui.new_child(UiBuilder::new().max_rect(rest));
     rest_ui.spacing_mut().item_spacing = vec2(theme::GAP, theme::GAP);
     cards(&mut rest_ui, rest, sequence, bench, &model, state);

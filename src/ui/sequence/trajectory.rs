@@ -1,14 +1,13 @@
 //! The way of the camera against the truth: in plan with axes, and in space.
 
-use egui::{
-    Align2, Color32, FontId, Id, Key, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, vec2,
-};
+use egui::{Align2, Color32, Id, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, vec2};
 use egui_plot::MarkerShape;
 
 use crate::geometry::Vec3;
 use crate::report::figure::{Orbit, round_step};
 use crate::text::sequence as words;
-use crate::ui::charts::{self, Chart, Extent, LegendEntry, LegendGlyph, arrow, marker};
+use crate::ui::charts::{self, Chart, Extent, LegendEntry, LegendGlyph, marker};
+use crate::ui::eye::{self, Eye};
 use crate::ui::{theme, widgets};
 
 /// The camera at one frame: where, and how its axes lie; in the first camera's frame, m.
@@ -33,21 +32,8 @@ pub(super) struct Ways {
     pub camera: Option<CameraPose>,
 }
 
-/// How the way is seen.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Eye {
-    orbit: Orbit,
-    zoom: f64,
-}
-
-impl Default for Eye {
-    fn default() -> Self {
-        Self { orbit: Orbit::new(-2.2, 0.6), zoom: 1.0 }
-    }
-}
-
-/// A press of an arrow key turns like a drag by so many points.
-const KEY_STEP: f32 = 12.0;
+/// From where the way is seen at first.
+pub(super) const AT_FIRST: Orbit = Orbit::new(-2.2, 0.6);
 /// Room around the way, points.
 const ROOM_AROUND: Vec2 = vec2(36.0, 40.0);
 /// The part of a plan's extent that is left free around the way.
@@ -117,8 +103,8 @@ pub(super) fn space(ui: &mut Ui, ways: &Ways, eye: &mut Eye) -> Option<usize> {
     let place = ui.available_rect_before_wrap();
     let response = ui.interact(place, ui.scope_id().with("way in space"), Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, words::SPACE_NAME));
-    steer(ui, &response, eye);
-    let view = View::new(place, ways, eye);
+    eye.steer(ui, &response);
+    let view = View::new(place, ways, *eye);
     let painter = ui.painter().with_clip_rect(place.intersect(ui.clip_rect()));
     let palette = theme::palette(ui);
     paint_floor(&painter, &view, palette.text_dim);
@@ -127,54 +113,19 @@ pub(super) fn space(ui: &mut Ui, ways: &Ways, eye: &mut Eye) -> Option<usize> {
     if let Some(camera) = &ways.camera {
         paint_camera(ui, &painter, camera, &at, f64::from(CAMERA_SIZE) / view.points_a_m);
     }
-    paint_triad(&painter, &view, place, theme::axis_colors(ui));
-    let font = FontId::proportional(theme::SMALL_SIZE);
+    // The first camera's axes.
+    eye.triad(&painter, place, [Vec3::x(), Vec3::y(), Vec3::z()].map(upright), theme::axis_colors(ui));
     let caption = words::mesh_of(&widgets::fixed(view.mesh_m, decimals_of(view.mesh_m)));
-    painter.text(place.left_top() + vec2(12.0, 8.0), Align2::LEFT_TOP, caption, font.clone(), palette.text_dim);
-    let hint = place.right_bottom() - vec2(12.0, 8.0);
-    painter.text(hint, Align2::RIGHT_BOTTOM, words::SPACE_HINT, font, palette.text_dim);
+    eye::captions(&painter, place, caption, words::SPACE_HINT, palette.text_dim);
     ui.advance_cursor_after_rect(place);
     let pointer = response.hover_pos().filter(|_| response.clicked())?;
     let near = ways.frames.iter().map(|(number, point)| (at(*point).distance(pointer), *number));
     near.filter(|(distance, _)| *distance < 10.0).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, number)| number)
 }
 
-fn steer(ui: &Ui, response: &egui::Response, eye: &mut Eye) {
-    if response.dragged() {
-        eye.orbit.turn(response.drag_delta().into());
-    }
-    if response.clicked() {
-        response.request_focus();
-    }
-    if response.has_focus() {
-        ui.input_mut(|input| {
-            for (key, step) in [
-                (Key::ArrowLeft, vec2(-KEY_STEP, 0.0)),
-                (Key::ArrowRight, vec2(KEY_STEP, 0.0)),
-                (Key::ArrowUp, vec2(0.0, KEY_STEP)),
-                (Key::ArrowDown, vec2(0.0, -KEY_STEP)),
-            ] {
-                if input.consume_key(egui::Modifiers::NONE, key) {
-                    eye.orbit.turn(step.into());
-                }
-            }
-        });
-    }
-    if response.hovered() {
-        // What is scrolled over the picture is not for the page below it.
-        let scrolled = ui.ctx().input_mut(|input| std::mem::take(&mut input.smooth_scroll_delta).y);
-        let zoom = ui.input(egui::InputState::zoom_delta);
-        eye.zoom *= f64::from(zoom) * (f64::from(scrolled) * 0.004).exp();
-    }
-    eye.zoom = eye.zoom.clamp(0.3, 30.0);
-    if response.double_clicked() {
-        *eye = Eye::default();
-    }
-}
-
 /// From the upright frame to the screen, without perspective.
 struct View {
-    orbit: Orbit,
+    eye: Eye,
     middle: Vec3,
     half: Vec3,
     centre: Pos2,
@@ -184,7 +135,7 @@ struct View {
 }
 
 impl View {
-    fn new(place: Rect, ways: &Ways, eye: &Eye) -> Self {
+    fn new(place: Rect, ways: &Ways, eye: Eye) -> Self {
         let mut low = Vec3::repeat(f64::INFINITY);
         let mut high = Vec3::repeat(f64::NEG_INFINITY);
         for point in ways.tracked.iter().flatten().chain(&ways.truth) {
@@ -198,19 +149,13 @@ impl View {
         // As the ball around it fits, so that turning does not make it grow or shrink.
         let reach = half.norm().max(LEAST_REACH_M);
         let room = place.shrink2(ROOM_AROUND).size() / 2.0;
-        let points_a_m = f64::from(room.min_elem().max(1.0)) / reach * eye.zoom;
+        let points_a_m = f64::from(room.min_elem().max(1.0)) / reach * eye.zoom();
         let mesh_m = round_step(reach / 2.5).unwrap_or(1.0);
-        Self { orbit: eye.orbit, middle: (low + high) / 2.0, half, centre: place.center(), points_a_m, mesh_m }
+        Self { eye, middle: (low + high) / 2.0, half, centre: place.center(), points_a_m, mesh_m }
     }
 
     fn at(&self, upright_m: Vec3) -> Pos2 {
-        self.centre + self.direction((upright_m - self.middle) * self.points_a_m)
-    }
-
-    #[expect(clippy::cast_possible_truncation, reason = "screen coordinates")]
-    fn direction(&self, vector: Vec3) -> Vec2 {
-        let seen = self.orbit.seen(vector);
-        vec2(seen.x as f32, -seen.y as f32)
+        self.centre + self.eye.on_screen((upright_m - self.middle) * self.points_a_m)
     }
 }
 
@@ -272,17 +217,6 @@ fn paint_camera(ui: &Ui, painter: &Painter, camera: &CameraPose, at: &impl Fn(Ve
     painter.circle_filled(eye, 3.0, color);
 }
 
-/// The first camera's axes, in a corner.
-fn paint_triad(painter: &Painter, view: &View, place: Rect, colors: [Color32; 3]) {
-    let origin = place.left_bottom() + vec2(40.0, -36.0);
-    for ((axis, name), color) in [(Vec3::x(), "x"), (Vec3::y(), "y"), (Vec3::z(), "z")].into_iter().zip(colors) {
-        let tip = view.direction(upright(axis) * 24.0);
-        arrow(painter, origin, origin + tip, Stroke::new(1.5, color));
-        let beside = if tip.length() > 4.0 { tip + tip.normalized() * 8.0 } else { vec2(8.0, 8.0) };
-        painter.text(origin + beside, Align2::CENTER_CENTER, name, FontId::proportional(theme::SMALL_SIZE), color);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -301,9 +235,9 @@ mod tests {
             let way = vec![Vec3::zeros(), Vec3::new(length, 0.2 * length, -length)];
             let ways = Ways { tracked: vec![way.clone()], ..Ways::default() };
             for turn in 0..20_u8 {
-                let mut eye = Eye::default();
-                eye.orbit.turn([f32::from(turn) * 31.0, f32::from(turn) * 7.0]);
-                let view = View::new(place, &ways, &eye);
+                let mut eye = Eye::new(AT_FIRST);
+                eye.turn(vec2(f32::from(turn) * 31.0, f32::from(turn) * 7.0));
+                let view = View::new(place, &ways, eye);
                 assert!(way.iter().all(|point| place.contains(view.at(upright(*point)))), "{length} {turn}");
             }
         }

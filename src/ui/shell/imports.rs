@@ -38,6 +38,7 @@ impl Shell {
     pub(super) fn take_paths(&mut self, purpose: Purpose, paths: Vec<PathBuf>) {
         match purpose {
             Purpose::Open => self.request(Command::to_read(paths)),
+            Purpose::SequenceFolder => paths.iter().for_each(|folder| self.request(Command::to_open_sequence(folder))),
             Purpose::ImportFiles | Purpose::ImportFolder | Purpose::AddSession => self.request(Command::Import(paths)),
             Purpose::Save => self.apply_to_each(paths, Command::SaveAs),
             Purpose::AddFurther => self.apply_to_each(paths, Command::AddFurther),

@@ -397,6 +397,7 @@ impl Shell {
     fn perform(&mut self, ctx: &Context, action: Action, commands: &mut Vec<Command>) {
         match action {
             Action::Open => self.ask_for_paths(Purpose::Open),
+            Action::OpenSequence => self.ask_for_paths(Purpose::SequenceFolder),
             Action::Import => self.ask_for_paths(Purpose::ImportFiles),
             Action::ImportFolder => self.ask_for_paths(Purpose::ImportFolder),
             Action::AddSession => self.ask_for_paths(Purpose::AddSession),

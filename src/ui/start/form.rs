@@ -12,7 +12,7 @@ use crate::app::{Command, Document};
 use crate::session::{Edit, SetupField, new_gesture};
 use crate::text::start as words;
 use crate::ui::theme;
-use crate::ui::widgets::{number_text, split_row};
+use crate::ui::widgets::{number_text, split_row, value_row};
 
 use super::form_model::{Field, MOUNTS, TargetKind};
 
@@ -154,12 +154,12 @@ impl FormState {
 /// The kind of target and the ball's size.
 pub fn target_row(ui: &mut Ui, document: &Document, commands: &mut Vec<Command>) {
     let target = &document.session.target;
+    let Some(present) = TargetKind::of(target) else {
+        value_row(ui, words::TARGET, words::target(target));
+        return;
+    };
     split_row(ui, words::TARGET, |ui| {
         unit_column(ui);
-        let Some(present) = TargetKind::of(target) else {
-            ui.label(words::target(target));
-            return;
-        };
         let choices = TargetKind::ALL.map(|kind| (kind.name(), kind));
         if let Some(kind) = choice(ui, words::TARGET, present, &choices) {
             commands.push(setup(SetupField::Target(kind.target())));

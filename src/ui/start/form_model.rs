@@ -30,6 +30,10 @@ pub enum Field {
     BallRadius,
     /// How well it is known.
     BallRadiusStd,
+    /// Noise of the seen place of a board.
+    TargetTranslationStd,
+    /// Noise of its seen orientation.
+    TargetRotationStd,
     /// Where the tip was touched, three numbers.
     TouchedPoint,
     /// The angle between a workpiece's planes, from its certificate.
@@ -59,6 +63,8 @@ impl Field {
             Self::ReferenceDistance => words::REFERENCE_DISTANCE,
             Self::BallRadius => words::BALL_RADIUS,
             Self::BallRadiusStd => words::BALL_RADIUS_STD,
+            Self::TargetTranslationStd => words::TARGET_TRANSLATION_STD,
+            Self::TargetRotationStd => words::TARGET_ROTATION_STD,
             Self::TouchedPoint => words::TOUCHED_POINT,
             Self::NominalAngle => words::NOMINAL_ANGLE,
             Self::NominalPitch => words::NOMINAL_PITCH,
@@ -73,13 +79,14 @@ impl Field {
     pub const fn unit(self) -> &'static str {
         match self {
             Self::Name | Self::Notes | Self::RobotModel | Self::SensorModel => "",
-            Self::OrientationStd | Self::NominalAngle => "°",
+            Self::OrientationStd | Self::TargetRotationStd | Self::NominalAngle => "°",
             Self::RoughMounting => "mm °",
             Self::PositionStd
             | Self::ProfileStd
             | Self::ReferenceDistance
             | Self::BallRadius
             | Self::BallRadiusStd
+            | Self::TargetTranslationStd
             | Self::TouchedPoint
             | Self::NominalPitch
             | Self::NominalHeight
@@ -100,8 +107,15 @@ impl Field {
             Target::Ball { .. } => &[Self::BallRadius, Self::BallRadiusStd],
             Target::Point => &[Self::TouchedPoint],
             Target::Workpiece => &[Self::NominalAngle, Self::NominalPitch, Self::NominalHeight, Self::NominalDiameter],
-            Target::RightAnglePlate | Target::Pose { .. } | Target::Rgbd { .. } => &[],
+            Target::Pose { .. } => &[Self::TargetTranslationStd, Self::TargetRotationStd],
+            Target::RightAnglePlate | Target::Rgbd { .. } => &[],
         }
+    }
+
+    /// Whether it says something only where a target is seen in profiles. A camera has none, and its methods need no start.
+    #[must_use]
+    pub const fn is_of_a_profiler(self) -> bool {
+        matches!(self, Self::ProfileStd | Self::RoughMounting)
     }
 
     /// Whether any text will do, so that it can be taken over while it is typed.
@@ -117,6 +131,7 @@ impl Field {
             Self::Name => words::NO_NAME,
             Self::Notes => words::NOTES_HINT,
             Self::BallRadiusStd => words::EXACT,
+            Self::TargetTranslationStd | Self::TargetRotationStd => words::FOUND_FROM_DATA,
             Self::TouchedPoint => words::TOUCHED_POINT_HINT,
             Self::RoughMounting => words::ROUGH_MOUNTING_HINT,
             _ => words::NOT_STATED,
@@ -131,6 +146,10 @@ impl Field {
             Target::Ball { radius_mm, radius_std_mm } => (Some(radius_mm), radius_std_mm),
             _ => (None, None),
         };
+        let (translation_std_mm, rotation_std_deg) = match session.target {
+            Target::Pose { translation_std_mm, rotation_std_deg } => (translation_std_mm, rotation_std_deg),
+            _ => (None, None),
+        };
         match self {
             Self::Name => session.name.clone(),
             Self::Notes => session.notes.clone(),
@@ -142,6 +161,8 @@ impl Field {
             Self::ReferenceDistance => number(session.sensor.reference_distance_mm),
             Self::BallRadius => number(radius_mm),
             Self::BallRadiusStd => number(radius_std_mm),
+            Self::TargetTranslationStd => number(translation_std_mm),
+            Self::TargetRotationStd => number(rotation_std_deg),
             Self::TouchedPoint => {
                 session.known.point_in_base_mm.map_or_else(String::new, |point| listed(point.as_slice()))
             }
@@ -167,6 +188,13 @@ impl Field {
             let mut target = session.target.clone();
             if let Target::Ball { radius_mm, radius_std_mm } = &mut target {
                 change(radius_mm, radius_std_mm);
+            }
+            SetupField::Target(target)
+        };
+        let board = |change: &dyn Fn(&mut Option<f64>, &mut Option<f64>)| {
+            let mut target = session.target.clone();
+            if let Target::Pose { translation_std_mm, rotation_std_deg } = &mut target {
+                change(translation_std_mm, rotation_std_deg);
             }
             SetupField::Target(target)
         };
@@ -213,6 +241,14 @@ impl Field {
                 let typed_mm = optional()?;
                 ball(&|_, radius_std_mm| *radius_std_mm = typed_mm)
             }
+            Self::TargetTranslationStd => {
+                let typed_mm = optional()?;
+                board(&|translation_std_mm, _| *translation_std_mm = typed_mm)
+            }
+            Self::TargetRotationStd => {
+                let typed_deg = optional()?;
+                board(&|_, rotation_std_deg| *rotation_std_deg = typed_deg)
+            }
         };
         checked(Edit::Setup(field), session)
     }
@@ -252,20 +288,23 @@ pub enum TargetKind {
     Plate,
     /// A tip or pin.
     Point,
+    /// A marker or board whose whole pose a camera sees.
+    Board,
 }
 
 impl TargetKind {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Ball, Self::Plate, Self::Point];
+    pub const ALL: [Self; 4] = [Self::Ball, Self::Plate, Self::Point, Self::Board];
 
-    /// That of a target; `None` for a camera's sequence, which cannot be chosen.
+    /// That of a target; `None` for scanned parts and a camera's sequence, which cannot be chosen.
     #[must_use]
     pub const fn of(target: &Target) -> Option<Self> {
         match target {
             Target::Ball { .. } => Some(Self::Ball),
             Target::RightAnglePlate => Some(Self::Plate),
             Target::Point => Some(Self::Point),
-            Target::Pose { .. } | Target::Workpiece | Target::Rgbd { .. } => None,
+            Target::Pose { .. } => Some(Self::Board),
+            Target::Workpiece | Target::Rgbd { .. } => None,
         }
     }
 
@@ -276,6 +315,18 @@ impl TargetKind {
             Self::Ball => words::BALL,
             Self::Plate => words::PLATE,
             Self::Point => words::POINT,
+            Self::Board => words::BOARD,
+        }
+    }
+
+    /// How it is measured.
+    #[must_use]
+    pub const fn hint(self) -> &'static str {
+        match self {
+            Self::Ball => words::BALL_HINT,
+            Self::Plate => words::PLATE_HINT,
+            Self::Point => words::POINT_HINT,
+            Self::Board => words::BOARD_HINT,
         }
     }
 
@@ -286,6 +337,7 @@ impl TargetKind {
             Self::Ball => Target::ball(USUAL_RADIUS_MM),
             Self::Plate => Target::RightAnglePlate,
             Self::Point => Target::Point,
+            Self::Board => Target::pose(),
         }
     }
 }
@@ -337,6 +389,9 @@ mod tests {
             (of(Target::Workpiece), Field::NominalPitch, "15", "15"),
             (of(Target::Workpiece), Field::NominalHeight, "10,5", "10.5"),
             (of(Target::Workpiece), Field::NominalDiameter, "", ""),
+            (of(Target::pose()), Field::TargetTranslationStd, "0,2", "0.2"),
+            (of(Target::pose()), Field::TargetRotationStd, "0.1", "0.1"),
+            (of(Target::pose()), Field::TargetRotationStd, "", ""),
             (of(Target::RightAnglePlate), Field::RoughMounting, "10 0 120 1 -2 90", "10  0  120  1  -2  90"),
             (of(Target::RightAnglePlate), Field::RoughMounting, "", ""),
         ] {
@@ -350,6 +405,7 @@ mod tests {
             (Target::Point, Field::TouchedPoint, "1 2 1e9", "found 1000000000, needed a position in mm"),
             (Target::Workpiece, Field::NominalPitch, "-3", "found -3, needed a part's size in mm"),
             (Target::Workpiece, Field::NominalAngle, "NaN", "found"),
+            (Target::pose(), Field::TargetTranslationStd, "-0.1", "needed"),
             (Target::RightAnglePlate, Field::RoughMounting, "1 2 3 4 5", "found 5 numbers, needed 6"),
         ] {
             let refusal = field.edit(text, &of(target)).expect_err(text);

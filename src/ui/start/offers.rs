@@ -122,7 +122,7 @@ pub fn cell(ui: &mut Ui, context: &mut PanelContext<'_>) {
                     }
                     ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                         ui.label(theme::strong(capture_words::CELL));
-                        ui.add(Label::new(theme::dim(ui, capture_words::CELL_LEAD)).truncate());
+                        ui.add(Label::new(theme::dim(ui, capture_words::CELL_LEAD)).wrap());
                     });
                 });
             });
@@ -137,7 +137,7 @@ pub fn new_session(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut Offe
     ui.horizontal_wrapped(|ui| {
         for kind in TargetKind::ALL {
             let button = ui.add(Button::new(words::preset(kind.name(), kind == TargetKind::Ball, USUAL_RADIUS_MM)));
-            if button.clicked() {
+            if button.on_hover_text(kind.hint()).clicked() {
                 context.commands.push(Command::NewSession(kind.target()));
             }
         }

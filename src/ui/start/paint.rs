@@ -1,35 +1,69 @@
 //! The small pictures on the samples' cards, drawn from the samples' own data.
 
-use egui::{Painter, Pos2, Rect, Stroke, vec2};
+use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, vec2};
 
 use crate::ui::theme::{self, Palette};
 
-use super::model::SamplePreview;
+use super::model::{Drawn, SamplePreview};
 
-/// Draws a sample's picture: its profiles in true scale, or its reduced points.
+/// Draws a sample's picture in true scale.
 pub fn picture(painter: &Painter, rect: Rect, palette: &Palette, preview: Option<&SamplePreview>) {
     painter.rect_filled(rect, 0.0, palette.canvas);
     let Some(preview) = preview else { return };
     let points: Vec<[f64; 2]> = preview.strokes.iter().flatten().copied().collect();
     let Some(view) = View::around(&points, rect.shrink2(vec2(16.0, 12.0))) else { return };
-    if preview.is_points_only {
-        paint_points(painter, &view, palette, &points);
-    } else {
-        paint_profiles(painter, &view, palette, &preview.strokes);
+    match preview.drawn {
+        Drawn::Profiles => paint_profiles(painter, &view, palette, &preview.strokes),
+        Drawn::Points => paint_points(painter, &view, palette, &points),
+        Drawn::Boards => paint_boards(painter, &view, palette, &preview.strokes),
+        Drawn::Way => paint_way(painter, &view, palette, &points),
     }
+}
+
+/// Strokes with their colour: all but the middle one are faint, and it is the last, over the others.
+fn one_of_many<'a>(
+    strokes: &'a [Vec<[f64; 2]>],
+    palette: &Palette,
+) -> impl Iterator<Item = (&'a [[f64; 2]], Color32, bool)> + use<'a> {
+    let middle_idx = strokes.len() / 2;
+    let faint = theme::INLIER.lerp_to_gamma(palette.canvas, 0.72);
+    let others = strokes.iter().enumerate().filter(move |(idx, _)| *idx != middle_idx);
+    let others = others.map(move |(_, stroke)| (stroke.as_slice(), faint, false));
+    others.chain(strokes.get(middle_idx).map(|stroke| (stroke.as_slice(), theme::INLIER, true)))
 }
 
 /// The profile in the middle of the sweep in full colour, the others faint behind it.
 fn paint_profiles(painter: &Painter, view: &View, palette: &Palette, strokes: &[Vec<[f64; 2]>]) {
-    let middle_idx = strokes.len() / 2;
-    let faint = theme::INLIER.lerp_to_gamma(palette.canvas, 0.72);
-    let mut order: Vec<usize> = (0..strokes.len()).filter(|idx| *idx != middle_idx).collect();
-    order.push(middle_idx);
-    for idx in order {
-        let (color, radius) = if idx == middle_idx { (theme::INLIER, 1.3) } else { (faint, 0.9) };
-        for &point in strokes.get(idx).into_iter().flatten() {
+    for (profile, color, is_middle) in one_of_many(strokes, palette) {
+        let radius = if is_middle { 1.3 } else { 0.9 };
+        for &point in profile {
             painter.circle_filled(view.map(point), radius, color);
         }
+    }
+}
+
+/// A board with its middle, the others faint behind it.
+fn paint_boards(painter: &Painter, view: &View, palette: &Palette, strokes: &[Vec<[f64; 2]>]) {
+    for (board, color, is_middle) in one_of_many(strokes, palette) {
+        let corners: Vec<Pos2> = board.iter().map(|corner| view.map(*corner)).collect();
+        painter.add(Shape::closed_line(corners.clone(), Stroke::new(if is_middle { 1.6 } else { 1.0 }, color)));
+        if let [a, b, c, d] = corners[..] {
+            painter.circle_filled(a.lerp(c, 0.5), if is_middle { 2.4 } else { 1.4 }, color);
+            if is_middle {
+                painter.line_segment([a.lerp(b, 0.5), c.lerp(d, 0.5)], Stroke::new(0.8, color));
+                painter.line_segment([b.lerp(c, 0.5), d.lerp(a, 0.5)], Stroke::new(0.8, color));
+            }
+        }
+    }
+}
+
+/// The way with a ring where it begins.
+fn paint_way(painter: &Painter, view: &View, palette: &Palette, points: &[[f64; 2]]) {
+    let way: Vec<Pos2> = points.iter().map(|point| view.map(*point)).collect();
+    let start = way.first().copied();
+    painter.add(Shape::line(way, Stroke::new(2.0, theme::INLIER)));
+    if let Some(start) = start {
+        painter.circle(start, 4.0, palette.canvas, Stroke::new(1.5, theme::INLIER));
     }
 }
 
@@ -41,7 +75,7 @@ fn paint_points(painter: &Painter, view: &View, palette: &Palette, points: &[[f6
     }
 }
 
-/// Maps millimetres in the laser plane to the picture, in true scale, z pointing down as seen from the sensor.
+/// Maps millimetres to the picture, in true scale: the second axis points down, as z does seen from a profiler.
 struct View {
     middle: [f64; 2],
     center: Pos2,

@@ -19,7 +19,7 @@ use crate::ui::widgets::{FromTop, card, primary_button, symbol_button};
 use crate::ui::{PanelContext, import, theme};
 
 use super::form::FormState;
-use super::model::{SamplePreview, preview_samples};
+use super::model::{Drawn, SamplePreview, SamplePreviews, preview_samples};
 use super::offers::{self, OffersState};
 use super::{overview, paint};
 
@@ -42,8 +42,8 @@ pub struct StartState {
     path: String,
     wants_focus: bool,
     hint: Option<&'static str>,
-    reading: Slot<Vec<Option<SamplePreview>>>,
-    previews: Vec<Option<SamplePreview>>,
+    reading: Slot<SamplePreviews>,
+    previews: SamplePreviews,
     looking: Slot<Vec<bool>>,
     /// The recent files that were looked for last.
     looked_for: Vec<PathBuf>,
@@ -245,23 +245,52 @@ fn recent(ui: &mut Ui, context: &mut PanelContext<'_>, state: &StartState, recen
     }
 }
 
-fn samples_grid(ui: &mut Ui, context: &mut PanelContext<'_>, state: &StartState) {
+/// A sample on its card.
+struct SampleCard<'a> {
+    name: &'static str,
+    lesson: &'static str,
+    preview: Option<&'a SamplePreview>,
+    opens: Command,
+}
+
+impl StartState {
+    fn cards(&self) -> impl Iterator<Item = SampleCard<'_>> {
+        let carried = samples::ALL.iter().enumerate().map(|(sample_idx, sample)| {
+            let (name, lesson) = words::sample_lesson(sample.file_name);
+            let preview = self.previews.carried.get(sample_idx).and_then(Option::as_ref);
+            SampleCard { name, lesson, preview, opens: Command::OpenSample(sample_idx) }
+        });
+        let sequence = self.previews.sequence.as_ref().map(|(file, preview)| {
+            let (name, lesson) = words::SEQUENCE_LESSON;
+            SampleCard { name, lesson, preview: Some(preview), opens: Command::Open(file.clone()) }
+        });
+        carried.chain(sequence)
+    }
+}
+
+fn samples_grid<'a>(ui: &mut Ui, context: &mut PanelContext<'_>, state: &'a StartState) {
     let width = ui.available_width();
     let num_columns = (2..=4).rev().find(|columns| fits(width, *columns)).unwrap_or(1);
     let card_width = (width - gaps(num_columns)) / count_points(num_columns);
-    let samples: Vec<usize> = (0..samples::ALL.len()).collect();
+    let with_lesson = |card: SampleCard<'a>| {
+        let lesson = lesson_on(ui, card_width, card.lesson);
+        (card, lesson)
+    };
+    let cards: Vec<_> = state.cards().map(with_lesson).collect();
     // As high as the longest lesson needs, all of them.
-    let lessons: Vec<Arc<Galley>> = samples.iter().map(|&sample_idx| lesson_of(ui, card_width, sample_idx)).collect();
-    let longest = lessons.iter().map(|lesson| lesson.size().y).fold(0.0, f32::max);
+    let longest = cards.iter().map(|(_, lesson)| lesson.size().y).fold(0.0, f32::max);
     let sizes_height = ui.text_style_height(&TextStyle::Small) + SIZES_UP;
     let size = vec2(card_width, (PICTURE_HEIGHT + LESSON_AT + longest + LESSON_GAP + sizes_height).ceil());
     ui.spacing_mut().item_spacing = vec2(theme::GAP, theme::GAP);
-    for row in samples.chunks(num_columns) {
+    for row in cards.chunks(num_columns) {
         ui.horizontal(|ui| {
-            for &sample_idx in row {
-                sample_card(ui, size, &lessons[sample_idx], context, state, sample_idx);
+            for (card, lesson) in row {
+                sample_card(ui, size, card, lesson, context, state.is_reading());
             }
         });
+    }
+    if state.previews.sequence.is_none() && !state.is_reading() {
+        ui.add(egui::Label::new(theme::dim(ui, words::NO_SAMPLE_SEQUENCE).small()).wrap());
     }
 }
 
@@ -284,8 +313,7 @@ fn round_points(value: f32) -> i8 {
 }
 
 /// What a sample teaches, wrapped to its card.
-fn lesson_of(ui: &Ui, card_width: f32, sample_idx: usize) -> Arc<Galley> {
-    let lesson = samples::ALL.get(sample_idx).map_or("", |sample| words::sample_lesson(sample.file_name).1);
+fn lesson_on(ui: &Ui, card_width: f32, lesson: &str) -> Arc<Galley> {
     WidgetText::from(theme::dim(ui, lesson)).into_galley(
         ui,
         Some(TextWrapMode::Wrap),
@@ -297,27 +325,33 @@ fn lesson_of(ui: &Ui, card_width: f32, sample_idx: usize) -> Arc<Galley> {
 fn sample_card(
     ui: &mut Ui,
     size: Vec2,
+    card: &SampleCard<'_>,
     lesson: &Arc<Galley>,
     context: &mut PanelContext<'_>,
-    state: &StartState,
-    sample_idx: usize,
+    is_reading: bool,
 ) {
-    let Some(sample) = samples::ALL.get(sample_idx) else { return };
-    let (name, _) = words::sample_lesson(sample.file_name);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, words::open_sample(name)));
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, words::open_sample(card.name)));
     if ui.is_rect_visible(rect) {
         let is_hot = response.hovered() || response.has_focus();
-        let preview = state.previews.get(sample_idx).and_then(Option::as_ref);
-        let sizes = match preview {
-            Some(preview) => words::sizes(preview.num_stations, preview.num_captures, preview.is_points_only),
-            None if state.is_reading() => words::READING.to_owned(),
+        let sizes = match card.preview {
+            Some(preview) => sizes(preview),
+            None if is_reading => words::READING.to_owned(),
             None => String::new(),
         };
-        paint_card(ui, rect, is_hot, preview, lesson, [name, &sizes]);
+        paint_card(ui, rect, is_hot, card.preview, lesson, [card.name, &sizes]);
     }
     if response.clicked() {
-        context.commands.push(Command::OpenSample(sample_idx));
+        context.commands.push(card.opens.clone());
+    }
+}
+
+fn sizes(preview: &SamplePreview) -> String {
+    match preview.drawn {
+        Drawn::Profiles => words::sizes(preview.num_stations, preview.num_captures, false),
+        Drawn::Points => words::sizes(preview.num_stations, preview.num_captures, true),
+        Drawn::Boards => words::sizes_of_boards(preview.num_captures),
+        Drawn::Way => words::sizes_of_sequence(preview.num_captures),
     }
 }
 

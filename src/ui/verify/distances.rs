@@ -5,6 +5,7 @@ use egui::{Align2, Color32, Rect, Role, Sense, Ui, UiBuilder, WidgetInfo, vec2};
 use crate::text::verify as words;
 use crate::ui::actions::Action;
 use crate::ui::compare::table::RowCells;
+use crate::ui::eye::Eye;
 use crate::ui::save_picture::saveable;
 use crate::ui::{PanelContext, theme, widgets};
 use crate::verify::{Distances, EdgePoint, Figures};
@@ -12,7 +13,7 @@ use crate::verify::{Distances, EdgePoint, Figures};
 use super::histogram::{self, Series};
 use super::marks::Mark;
 use super::panel::View;
-use super::space::{self, Camera};
+use super::space;
 
 /// Parts of a row: calibration, mean, sd, maximum to the lines and to the plane, angle, gap.
 const PARTS: [f32; 9] = [238.0, 70.0, 70.0, 70.0, 70.0, 70.0, 70.0, 96.0, 78.0];
@@ -28,7 +29,7 @@ pub(super) struct DistancesState {
     plate: usize,
     /// The calibration in the picture, by its name.
     shown: Option<String>,
-    camera: Camera,
+    eye: Eye,
     is_fitted: [bool; 2],
     /// Calibrations that the histograms leave out, by their names.
     hidden: Vec<String>,
@@ -36,7 +37,7 @@ pub(super) struct DistancesState {
 
 impl Default for DistancesState {
     fn default() -> Self {
-        Self { plate: 0, shown: None, camera: Camera::default(), is_fitted: [true; 2], hidden: Vec::new() }
+        Self { plate: 0, shown: None, eye: Eye::new(space::AT_FIRST), is_fitted: [true; 2], hidden: Vec::new() }
     }
 }
 
@@ -88,7 +89,7 @@ pub(super) fn show(ui: &mut Ui, view: &View<'_>, context: &mut PanelContext<'_>,
     let each = (height - theme::GAP) / 2.0;
     if width < BESIDE_FROM {
         histograms(ui, &rows, each, state);
-        picture(ui, height, shown.mark, distances, &mut state.camera);
+        picture(ui, height, shown.mark, distances, &mut state.eye);
         return;
     }
     let area = Rect::from_min_size(ui.cursor().min, vec2(width, height));
@@ -96,7 +97,7 @@ pub(super) fn show(ui: &mut Ui, view: &View<'_>, context: &mut PanelContext<'_>,
     histograms(&mut ui.new_child(UiBuilder::new().max_rect(left)), &rows, each, state);
     let right = right.with_min_x(right.left() + theme::GAP);
     let mut beside = ui.new_child(UiBuilder::new().max_rect(right));
-    picture(&mut beside, height, shown.mark, distances, &mut state.camera);
+    picture(&mut beside, height, shown.mark, distances, &mut state.eye);
     ui.allocate_rect(area, Sense::hover());
 }
 
@@ -260,11 +261,11 @@ fn histograms(ui: &mut Ui, rows: &[Row<'_>], height: f32, state: &mut DistancesS
     }
 }
 
-fn picture(ui: &mut Ui, height: f32, mark: &Mark, distances: &Distances, camera: &mut Camera) {
+fn picture(ui: &mut Ui, height: f32, mark: &Mark, distances: &Distances, eye: &mut Eye) {
     let right = |ui: &mut Ui| {
         ui.label(theme::dim(ui, &mark.name));
     };
     widgets::card_with_height(ui, words::IN_SPACE, height, right, |ui| {
-        saveable(ui, words::IN_SPACE, |ui| space::show(ui, distances, mark, camera));
+        saveable(ui, words::IN_SPACE, |ui| space::show(ui, distances, mark, eye));
     });
 }

@@ -1,34 +1,20 @@
 //! The plate's points in space, with the fitted lines and plane; deviations are drawn larger than they are, and it is said how
 //! much.
 
-use egui::{Align2, Color32, FontId, Key, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, vec2};
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, vec2};
 
 use crate::calibrate::Edge;
 use crate::geometry::{Mat3, Vec3};
 use crate::report::figure::Orbit;
 use crate::text::verify as words;
-use crate::ui::charts::arrow;
+use crate::ui::eye::{self, Eye};
 use crate::ui::{theme, widgets};
 use crate::verify::Distances;
 
 use super::marks::Mark;
 
-/// From where the plate is seen.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Camera {
-    /// About the plate's normal.
-    orbit: Orbit,
-    zoom: f64,
-}
-
-impl Default for Camera {
-    fn default() -> Self {
-        Self { orbit: Orbit::new(-0.951, 0.62), zoom: 1.0 }
-    }
-}
-
-/// A press of an arrow key turns like a drag by so many points.
-const KEY_STEP: f32 = 12.0;
+/// From where the plate is seen at first, about its normal.
+pub const AT_FIRST: Orbit = Orbit::new(-0.951, 0.62);
 /// Deviations are enlarged until the largest is this part of the picture.
 const DEVIATION_PART: f64 = 0.13;
 /// Room between the outermost points and the border of the plane, as a part of their extent.
@@ -97,13 +83,13 @@ fn enlarged(length_mm: f64, deviation_mm: f64) -> f64 {
 }
 
 /// Shows the picture in the space available.
-pub fn show(ui: &mut Ui, distances: &Distances, mark: &Mark, camera: &mut Camera) {
+pub fn show(ui: &mut Ui, distances: &Distances, mark: &Mark, eye: &mut Eye) {
     let place = ui.available_rect_before_wrap();
     let response = ui.interact(place, ui.scope_id().with("space"), Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, words::space_name(&mark.name)));
-    steer(ui, &response, camera);
+    eye.steer(ui, &response);
     let scene = Scene::of(distances);
-    let view = View::new(place, &scene, camera);
+    let view = View::new(place, &scene, *eye);
     let painter = ui.painter().with_clip_rect(place.intersect(ui.clip_rect()));
     let palette = theme::palette(ui);
     paint_plane(&painter, &scene, &view, palette.text_dim);
@@ -121,12 +107,11 @@ pub fn show(ui: &mut Ui, distances: &Distances, mark: &Mark, camera: &mut Camera
         painter.circle_filled(*at, 5.0, palette.surface.gamma_multiply(0.7));
         mark.paint(&painter, *at);
     }
-    paint_triad(&painter, &scene, &view, place, theme::axis_colors(ui));
-    let font = FontId::proportional(theme::SMALL_SIZE);
+    // The base's axes.
+    let axes = [Vec3::x(), Vec3::y(), Vec3::z()].map(|axis| scene.plate_from_base * axis);
+    eye.triad(&painter, place, axes, theme::axis_colors(ui));
     let caption = words::enlarged(&widgets::fixed(scene.enlarged, 0));
-    painter.text(place.left_top() + vec2(12.0, 8.0), Align2::LEFT_TOP, caption, font.clone(), palette.text_dim);
-    let hint = place.right_bottom() - vec2(12.0, 8.0);
-    painter.text(hint, Align2::RIGHT_BOTTOM, words::SPACE_HINT, font.clone(), palette.text_dim);
+    eye::captions(&painter, place, caption, words::SPACE_HINT, palette.text_dim);
     let nearest = response.hover_pos().and_then(|pointer| {
         let near = seen.iter().map(|(at, idx)| (at.distance(pointer), *at, *idx));
         near.filter(|(distance, ..)| *distance < 10.0).min_by(|a, b| a.0.total_cmp(&b.0))
@@ -135,6 +120,7 @@ pub fn show(ui: &mut Ui, distances: &Distances, mark: &Mark, camera: &mut Camera
         let point = &distances.points[idx];
         let figures = [point.to_line_mm, point.to_plane_mm].map(|distance| widgets::fixed(distance, 3));
         let note = words::point_readout(&point.label, point.edge, &figures[0], &figures[1]);
+        let font = FontId::proportional(theme::SMALL_SIZE);
         let galley = painter.layout_no_wrap(note, font, palette.text);
         let wanted = Align2::LEFT_BOTTOM.anchor_size(at + vec2(10.0, -6.0), galley.size());
         let left = wanted.left().min(place.right() - wanted.width() - 4.0).max(place.left() + 4.0);
@@ -145,66 +131,26 @@ pub fn show(ui: &mut Ui, distances: &Distances, mark: &Mark, camera: &mut Camera
     ui.advance_cursor_after_rect(place);
 }
 
-fn steer(ui: &Ui, response: &egui::Response, camera: &mut Camera) {
-    if response.dragged() {
-        camera.orbit.turn(response.drag_delta().into());
-    }
-    if response.clicked() {
-        response.request_focus();
-    }
-    if response.has_focus() {
-        ui.input(|input| {
-            for (key, step) in [
-                (Key::ArrowLeft, vec2(-KEY_STEP, 0.0)),
-                (Key::ArrowRight, vec2(KEY_STEP, 0.0)),
-                (Key::ArrowUp, vec2(0.0, KEY_STEP)),
-                (Key::ArrowDown, vec2(0.0, -KEY_STEP)),
-            ] {
-                if input.key_pressed(key) {
-                    camera.orbit.turn(step.into());
-                }
-            }
-        });
-    }
-    if response.hovered() {
-        // What is scrolled over the picture is not for the page below it.
-        let scrolled = ui.ctx().input_mut(|input| std::mem::take(&mut input.smooth_scroll_delta).y);
-        let zoom = ui.input(egui::InputState::zoom_delta);
-        camera.zoom *= f64::from(zoom) * (f64::from(scrolled) * 0.004).exp();
-    }
-    camera.zoom = camera.zoom.clamp(0.3, 30.0);
-    if response.double_clicked() {
-        *camera = Camera::default();
-    }
-}
-
 /// From the plate's frame to the screen, without perspective: parallel edges stay parallel.
 struct View {
-    orbit: Orbit,
+    eye: Eye,
     centre: Pos2,
     points_a_mm: f64,
 }
 
 impl View {
-    fn new(place: Rect, scene: &Scene, camera: &Camera) -> Self {
+    fn new(place: Rect, scene: &Scene, eye: Eye) -> Self {
         // As large as the plane fits as it is seen at first, so that turning does not make it grow or shrink.
-        let at_first = Camera::default().orbit;
         let half =
-            |axis: usize| scene.corners().iter().map(|corner| at_first.seen(*corner)[axis].abs()).fold(1.0, f64::max);
+            |axis: usize| scene.corners().iter().map(|corner| AT_FIRST.seen(*corner)[axis].abs()).fold(1.0, f64::max);
         let room = place.shrink2(ROOM_AROUND).size() / 2.0;
         let fitted = (f64::from(room.x.max(1.0)) / half(0)).min(f64::from(room.y.max(1.0)) / half(1));
-        Self { orbit: camera.orbit, centre: place.center(), points_a_mm: fitted * camera.zoom }
+        Self { eye, centre: place.center(), points_a_mm: fitted * eye.zoom() }
     }
 
     /// Where a point of the plate's frame is on the screen.
     fn at(&self, in_plate: Vec3) -> Pos2 {
-        self.centre + self.direction(in_plate * self.points_a_mm)
-    }
-
-    #[expect(clippy::cast_possible_truncation, reason = "screen coordinates")]
-    fn direction(&self, in_plate: Vec3) -> Vec2 {
-        let seen = self.orbit.seen(in_plate);
-        vec2(seen.x as f32, -seen.y as f32)
+        self.centre + self.eye.on_screen(in_plate * self.points_a_mm)
     }
 }
 
@@ -238,17 +184,6 @@ fn paint_lines(painter: &Painter, scene: &Scene, view: &View, distances: &Distan
         let outwards = (far - near).normalized() * 12.0;
         let font = FontId::proportional(theme::BODY_SIZE);
         painter.text(far + outwards, Align2::CENTER_CENTER, words::edge_letter(edge), font, color);
-    }
-}
-
-/// The base's axes, in a corner.
-fn paint_triad(painter: &Painter, scene: &Scene, view: &View, place: Rect, colors: [Color32; 3]) {
-    let origin = place.left_bottom() + vec2(44.0, -40.0);
-    for ((axis, name), color) in [(Vec3::x(), "x"), (Vec3::y(), "y"), (Vec3::z(), "z")].into_iter().zip(colors) {
-        let tip = view.direction(scene.plate_from_base * axis * 26.0);
-        arrow(painter, origin, origin + tip, Stroke::new(1.5, color));
-        let beside = if tip.length() > 4.0 { tip + tip.normalized() * 8.0 } else { vec2(8.0, 8.0) };
-        painter.text(origin + beside, Align2::CENTER_CENTER, name, FontId::proportional(theme::SMALL_SIZE), color);
     }
 }
 

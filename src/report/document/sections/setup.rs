@@ -20,15 +20,28 @@ pub(in crate::report::document) fn blocks(evidence: &Evidence, options: &Options
     }
     let or_not_stated =
         |text: &str| if text.trim().is_empty() { words::NOT_STATED.to_owned() } else { text.to_owned() };
+    let target_noise = match session.target {
+        Target::Pose { translation_std_mm, rotation_std_deg } => {
+            let noise = words::pose_noise(translation_std_mm, rotation_std_deg, is_estimated);
+            Some(Fact::new(words::TARGET_NOISE, noise))
+        }
+        // The images say themselves how precise they are.
+        Target::Rgbd { .. } => None,
+        Target::Ball { .. } | Target::RightAnglePlate | Target::Point | Target::Workpiece => {
+            Some(Fact::new(words::SENSOR_NOISE, words::sensor_noise(sensor.profile_std_mm)))
+        }
+    };
     let mut facts = vec![
         Fact::new(words::ROBOT, or_not_stated(&robot.model)),
         Fact::new(
             words::ROBOT_NOISE,
-            words::robot_noise(robot.position_std_mm, robot.orientation_std_deg, is_estimated),
+            words::pose_noise(robot.position_std_mm, robot.orientation_std_deg, is_estimated),
         ),
         Fact::new(words::POSES, notation_in_full(&robot.notation)),
         Fact::new(words::SENSOR, or_not_stated(&sensor.model)),
-        Fact::new(words::SENSOR_NOISE, words::sensor_noise(sensor.profile_std_mm)),
+    ];
+    facts.extend(target_noise);
+    facts.extend([
         Fact::new(
             words::REFERENCE_DISTANCE,
             sensor
@@ -37,7 +50,7 @@ pub(in crate::report::document) fn blocks(evidence: &Evidence, options: &Options
         ),
         Fact::new(words::MOUNT, start::mount(session.mount)),
         Fact::new(words::TARGET_FACT, target),
-    ];
+    ]);
     let used = session.stations.iter().filter(|station| station.enabled);
     let num_used = used.clone().count();
     if !matches!(session.target, Target::Rgbd { .. }) {

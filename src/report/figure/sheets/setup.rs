@@ -1,23 +1,25 @@
-//! The set-up in space: base, flange poses, laser planes and the target; and the way of the flange.
+//! The set-up in space: base, flange poses, laser planes or lines of sight, and the target; and the way of the flange.
 
-use crate::calibrate::{Mount, PlateFound, Solution};
-use crate::geometry::{Rigid, Vec3};
+use crate::calibrate::{MotionFound, Mount, PlateFound, Solution};
+use crate::geometry::{Rigid, Sensor as SensorFrame, Target as TargetFrame, Transform, Vec3};
 use crate::report::evidence::{Evidence, TargetEvidence};
 use crate::report::figure::ink::Stroke;
 use crate::report::figure::model::ball_radius_mm;
 use crate::report::figure::palette::{self, Marker, Rgb, method_color};
-use crate::report::figure::plot::{Axis, Dash, Entry, Mark, Note, NoteSide, Plot, Sign};
+use crate::report::figure::plot::{Axis, Dash, Entry, Filling, Mark, Note, NoteSide, Plot, Sign};
 use crate::report::figure::{Extent, Figure};
 use crate::session::{Reading, Session};
 use crate::text::figures as words;
 
 use super::sheet::{HALF_PAGE, Sheet};
-use super::space::{Scene, Triad};
+use super::space::{RAY_COLOR, Scene, Triad};
 
 /// More stations than this are not all named.
 const MOST_NAMED: usize = 24;
-/// More laser planes than this hide each other.
-const MOST_LASER_PLANES: usize = 40;
+/// More laser planes or lines of sight than this hide each other.
+const MOST_RAYS: usize = 40;
+/// Half the side of a board in the sketch, as a part of its distance: how large it is, nobody says.
+const BOARD_PART: f64 = 0.1;
 
 /// The figures of the set-up.
 pub(super) fn figures(evidence: &Evidence) -> Vec<Figure> {
@@ -50,7 +52,11 @@ fn sketch(evidence: &Evidence) -> Option<Figure> {
         if !is_fixed {
             scene.holder(pose.translation.vector, base_from_sensor.translation.vector);
         }
-        let has_plane = place < MOST_LASER_PLANES && (place == 0 || !is_fixed);
+        if let Some(seen) = board_seen(target, *idx).filter(|_| place < MOST_RAYS) {
+            let sensor_in_base = base_from_sensor.translation.vector;
+            scene.line_of_sight(sensor_in_base, in_base(&base_from_sensor, seen.translation_mm()));
+        }
+        let has_plane = place < MOST_RAYS && (place == 0 || !is_fixed);
         if let Some(line) = laser_line(target, *idx).filter(|_| has_plane) {
             let ends = line.map(|end| in_base(&base_from_sensor, end));
             scene.laser_plane(base_from_sensor.translation.vector, ends);
@@ -64,19 +70,25 @@ fn sketch(evidence: &Evidence) -> Option<Figure> {
     }
     let is_point = solution.plate.is_none() && !target.uses_radius();
     let name = words::target(&session.target, is_point);
-    let sign = if is_point { Sign::Solid(Marker::Diamond) } else { Sign::Line(Dash::Solid) };
+    let is_board = solution.motion.is_some();
+    let sign = if is_point && !is_board { Sign::Solid(Marker::Diamond) } else { Sign::Line(Dash::Solid) };
+    let rays = if is_board {
+        Entry::new(Sign::Line(Dash::Solid), RAY_COLOR, words::LINE_OF_SIGHT)
+    } else {
+        Entry::new(Sign::Bar(Filling::Faint), palette::OUTLIER, words::LASER_PLANE)
+    };
     let mut sheet = Sheet::new(HALF_PAGE);
     let legend = [
         Entry::new(Sign::Line(Dash::Solid), palette::AXES[0], "x"),
         Entry::new(Sign::Line(Dash::Solid), palette::AXES[1], "y"),
         Entry::new(Sign::Line(Dash::Solid), palette::AXES[2], "z"),
         Entry::new(Sign::Solid(Marker::Circle), palette::TEXT, words::FLANGE),
-        Entry::new(Sign::Bar(crate::report::figure::plot::Filling::Faint), palette::OUTLIER, words::LASER_PLANE),
+        rays,
         Entry::new(sign, method_color(solution.method), name),
     ];
     let area = sheet.legend(&legend);
     scene.draw(&area, sheet.page());
-    let title = words::setup_title(name, poses.len(), is_fixed);
+    let title = words::setup_title(name, poses.len(), is_fixed, is_board);
     Some(sheet.figure("setup", title.clone(), title))
 }
 
@@ -84,7 +96,7 @@ fn sketch(evidence: &Evidence) -> Option<Figure> {
 fn laser_line(target: &TargetEvidence, station_idx: usize) -> Option<[Vec3; 2]> {
     match &target.session.stations.get(station_idx)?.captures.first()?.reading {
         Reading::Point(point) => Some(about(*point)),
-        Reading::Pose(sensor_from_target) => Some(about(sensor_from_target.translation_mm())),
+        Reading::Pose(_) => None,
         Reading::Profile(profile) => {
             let (mut range, mut sum, mut count) = ([f64::INFINITY, f64::NEG_INFINITY], 0.0, 0.0);
             for (_, x, z) in profile.valid_points() {
@@ -98,6 +110,14 @@ fn laser_line(target: &TargetEvidence, station_idx: usize) -> Option<[Vec3; 2]> 
     }
 }
 
+/// The board or marker as the camera has it at a station's first capture.
+fn board_seen(target: &TargetEvidence, station_idx: usize) -> Option<&Transform<SensorFrame, TargetFrame>> {
+    match &target.session.stations.get(station_idx)?.captures.first()?.reading {
+        Reading::Pose(sensor_from_target) => Some(sensor_from_target),
+        Reading::Profile(_) | Reading::Point(_) => None,
+    }
+}
+
 /// A short line about a point that was reduced elsewhere.
 fn about(point_in_sensor: Vec3) -> [Vec3; 2] {
     let half = Vec3::new(0.12 * point_in_sensor.norm().max(1.0), 0.0, 0.0);
@@ -108,13 +128,25 @@ fn about(point_in_sensor: Vec3) -> [Vec3; 2] {
 fn mark_target(scene: &mut Scene, target: &TargetEvidence, solution: &Solution, pose: Option<&Rigid>) {
     let color = method_color(solution.method);
     let place = |point: Vec3| pose.map_or(point, |pose| (pose * nalgebra::Point3::from(point)).coords);
-    match &solution.plate {
-        Some(plate) => scene.plate(plate_corners(plate).map(place), color),
-        None if target.uses_radius() => {
+    match (&solution.plate, &solution.motion) {
+        (Some(plate), _) => scene.plate(plate_corners(plate).map(place), color),
+        (None, Some(motion)) => scene.board(board_corners(target, motion).map(place), color),
+        (None, None) if target.uses_radius() => {
             scene.ball(place(solution.target_in_base_mm), ball_radius_mm(&target.session).unwrap_or(0.0), color);
         }
-        None => scene.point(place(solution.target_in_base_mm), color),
+        (None, None) => scene.point(place(solution.target_in_base_mm), color),
     }
+}
+
+/// The corners of a board, in the base.
+fn board_corners(target: &TargetEvidence, motion: &MotionFound) -> [Vec3; 4] {
+    let num_stations = target.session.stations.len();
+    let distance_mm =
+        (0..num_stations).find_map(|idx| board_seen(target, idx)).map(|seen| seen.translation_mm().norm());
+    let half_mm = BOARD_PART * distance_mm.unwrap_or(1.0);
+    let base_from_target = motion.base_from_target.rigid();
+    [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+        .map(|[x, y]| (base_from_target * nalgebra::Point3::new(x * half_mm, y * half_mm, 0.0)).coords)
 }
 
 /// The ends of edge p, the corner, and the end of edge q, as far as the points reach, in the base.

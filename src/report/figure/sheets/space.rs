@@ -34,6 +34,8 @@ enum Thing {
     /// From the flange to its sensor.
     Holder([Vec3; 2]),
     LaserPlane([Vec3; 3]),
+    /// From a camera to what it sees.
+    LineOfSight([Vec3; 2]),
     Ball {
         centre: Vec3,
         radius_mm: f64,
@@ -43,18 +45,26 @@ enum Thing {
         corners: [Vec3; 3],
         color: Rgb,
     },
+    Board {
+        corners: [Vec3; 4],
+        color: Rgb,
+    },
     Point {
         at: Vec3,
         color: Rgb,
     },
 }
 
+/// The edge of what light or sight goes through.
+pub(super) const RAY_COLOR: Rgb = Rgb(0xe3, 0x9c, 0x95);
+
 impl Thing {
     /// The points that have to be in sight.
     fn reach(&self) -> Vec<Vec3> {
         match self {
             Self::Frame { pose, .. } => vec![pose.translation.vector],
-            Self::Holder(ends) => ends.to_vec(),
+            Self::Holder(ends) | Self::LineOfSight(ends) => ends.to_vec(),
+            Self::Board { corners, .. } => corners.to_vec(),
             Self::LaserPlane(corners) => corners.to_vec(),
             Self::Ball { centre, radius_mm, .. } => {
                 [-*radius_mm, *radius_mm].map(|radius| centre + Vec3::repeat(radius * 0.58)).to_vec()
@@ -99,6 +109,16 @@ impl Scene {
     /// The part of a laser plane between the sensor and what it lights.
     pub fn laser_plane(&mut self, sensor: Vec3, [from, to]: [Vec3; 2]) {
         self.things.push(Thing::LaserPlane([sensor, from, to]));
+    }
+
+    /// A camera's line of sight to what it sees.
+    pub fn line_of_sight(&mut self, camera: Vec3, target: Vec3) {
+        self.things.push(Thing::LineOfSight([camera, target]));
+    }
+
+    /// A board between its corners, in their order.
+    pub fn board(&mut self, corners: [Vec3; 4], color: Rgb) {
+        self.things.push(Thing::Board { corners, color });
     }
 
     /// A ball.
@@ -195,7 +215,15 @@ impl View {
             Thing::LaserPlane(corners) => {
                 let corners = corners.map(|corner| self.at(corner));
                 page.area(corners.to_vec(), Fill::veil(palette::OUTLIER, 0.1));
-                page.outline(&corners, Stroke::new(0.4, Rgb(0xe3, 0x9c, 0x95)));
+                page.outline(&corners, Stroke::new(0.4, RAY_COLOR));
+            }
+            Thing::LineOfSight(ends) => {
+                page.line(ends.map(|end| self.at(end)).to_vec(), Stroke::new(0.5, RAY_COLOR), Dash::Solid);
+            }
+            Thing::Board { corners, color } => {
+                let corners = corners.map(|corner| self.at(corner));
+                page.area(corners.to_vec(), Fill::veil(*color, 0.15));
+                page.outline(&corners, Stroke::new(1.1, *color));
             }
             Thing::Ball { centre, radius_mm, color } => {
                 let at = self.at(*centre);

@@ -149,7 +149,9 @@ pub const fn meaning(mount: Mount) -> &'static str {
 #[must_use]
 pub const fn sensor_frame(target: &Target) -> &'static str {
     match target {
-        Target::Pose { .. } => "Sensor frame: that in which the target's poses are given. Lengths are millimetres.",
+        Target::Pose { .. } => {
+            "Sensor frame: that of the camera, as the program has it that found the target: usually z along the optical axis, x to the right and y down in the image. Lengths are millimetres."
+        }
         Target::Rgbd { .. } => {
             "Sensor frame: that of the colour camera: x to the right, y down, z along the optical axis. Lengths are millimetres."
         }
@@ -243,6 +245,8 @@ pub const SENSOR: &str = "Sensor";
 /// Name of a fact.
 pub const SENSOR_NOISE: &str = "Noise of a profile point, stated";
 /// Name of a fact.
+pub const TARGET_NOISE: &str = "Noise of the seen target, stated";
+/// Name of a fact.
 pub const REFERENCE_DISTANCE: &str = "Accuracy stated at";
 /// Name of a fact.
 pub const FRAMES: &str = "Frames";
@@ -281,9 +285,9 @@ pub const RADIUS_NOT_USED: &str = "not used, as the readings are centres already
 /// A noise that the session does not hold.
 pub const ESTIMATED: &str = "not stated; estimated from the data, see “Validation”";
 
-/// The robot's noise; `is_estimated` where the report tells what the data show of it.
+/// The noise of poses; `is_estimated` where the report tells what the data show of it.
 #[must_use]
-pub fn robot_noise(position_mm: Option<f64>, orientation_deg: Option<f64>, is_estimated: bool) -> String {
+pub fn pose_noise(position_mm: Option<f64>, orientation_deg: Option<f64>, is_estimated: bool) -> String {
     match (position_mm, orientation_deg) {
         (None, None) => if is_estimated { ESTIMATED } else { NOT_STATED }.to_owned(),
         (position, orientation) => {
