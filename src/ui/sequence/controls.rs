@@ -39,10 +39,10 @@ pub(super) fn card(
                 ui.horizontal(|ui| {
                     ui.set_min_height(28.0);
                     let width = (ui.available_width() - OPTIONS_WIDTH).max(160.0);
-                    player.show(ui, &model.times_s, width);
+                    player.show(ui, &model.journey.times_s, width);
                     ui.with_layout(Layout::right_to_left(Align::Center), |ui| options(ui, context, typed));
                 });
-                let sentence = frame_sentence(context.workbench.sequence(), sequence, &model.times_s, player.frame_idx);
+                let sentence = frame_sentence(context.workbench.sequence(), sequence, &model.journey.times_s, player.frame_idx);
                 ui.add(Label::new(&sentence).truncate());
                 ui.horizontal(|ui| summary(ui, context.workbench, sequence, model));
             });
@@ -126,7 +126,7 @@ fn summary(ui: &mut Ui, workbench: &Workbench, sequence: &Sequence, model: &Mode
     };
     let travel = tracked.records.iter().rev().find_map(|record| record.outcome.as_ref().ok()).map(|last| last.travel);
     let text = words::summary(
-        model.ways.frames.len(),
+        model.journey.ways.frames.len(),
         tracked.records.len(),
         travel.map(|travel| [travel.distance_mm / 1000.0, travel.turn_rad.to_degrees()]),
         tracked.evaluation.map(|found| [found.ate_rmse_mm, found.rpe_translation_rmse_mm]),

@@ -8,6 +8,7 @@ use egui::{ColorImage, Rect, Ui, UiBuilder, vec2};
 use crate::app::Command;
 use crate::app::workbench::sequence::{FramePictures, SequenceBench, SequenceCommand, TrackOptions};
 use crate::odometry::{DepthImage, Match};
+use crate::report::figure::model::Values;
 use crate::session::sequence::Sequence;
 use crate::text::sequence as words;
 use crate::ui::eye::Eye;
@@ -15,7 +16,7 @@ use crate::ui::save_picture::saveable;
 use crate::ui::{PanelContext, theme, widgets};
 
 use super::controls;
-use super::model::{Model, Values};
+use super::model::Model;
 use super::over_time::{Curve, OverTime};
 use super::picture::{Distances, Picture, Pixel, Scene, Shown, Way, distances_image};
 use super::player::Player;
@@ -135,10 +136,10 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>, state: &mut SequenceSta
     }
     let model = state.model(sequence, bench);
     let is_growing = workbench.solve_progress().is_some() && bench.tracked().is_none();
-    state.player.advance(ui, &model.times_s, is_growing);
-    state.player.keys(ui, &model.times_s);
+    state.player.advance(ui, &model.journey.times_s, is_growing);
+    state.player.keys(ui, &model.journey.times_s);
     let frame_idx = state.player.frame_idx;
-    if !model.times_s.is_empty() && !bench.is_looking_for(frame_idx) {
+    if !model.journey.times_s.is_empty() && !bench.is_looking_for(frame_idx) {
         context.commands.push(Command::Sequence(SequenceCommand::Look(frame_idx)));
     }
     let area = ui.available_rect_before_wrap();
@@ -247,15 +248,15 @@ fn way_card(ui: &mut Ui, height: f32, bench: &SequenceBench, model: &Model, stat
         ui.selectable_value(&mut view, WayView::Plan, words::IN_PLAN).on_hover_text(words::IN_PLAN_HINT);
     };
     let clicked = widgets::card_with_height(ui, words::WAY, height, tabs, |ui| {
-        if model.ways.frames.is_empty() {
+        if model.journey.ways.frames.is_empty() {
             widgets::nothing(ui, words::NO_WAY);
             return None;
         }
-        let mut ways = model.ways.clone();
-        ways.camera = model.camera_at(bench, state.player.frame_idx);
+        let ways = &model.journey.ways;
+        let camera = model.camera_at(bench, state.player.frame_idx);
         saveable(ui, words::WAY, |ui| match state.way_view {
-            WayView::Plan => way::plan(ui, &ways, &mut state.is_plan_fitted),
-            WayView::Space => way::space(ui, &ways, &mut state.eye),
+            WayView::Plan => way::plan(ui, ways, camera.as_ref(), &mut state.is_plan_fitted),
+            WayView::Space => way::space(ui, ways, camera.as_ref(), &mut state.eye),
         })
     });
     state.way_view = view;
@@ -284,12 +285,12 @@ fn travel_card(ui: &mut Ui, height: f32, model: &Model, state: &mut SequenceStat
         model,
         state,
         [
-            ("sequence distance", words::DISTANCE_AXIS, 3, with_truth(&model.distance_m, &model.true_distance_m), true),
+            ("sequence distance", words::DISTANCE_AXIS, 3, with_truth(&model.journey.distance_m, &model.journey.true_distance_m), true),
             (
                 "sequence heading",
                 words::HEADING_AXIS,
                 2,
-                with_truth(&model.heading_deg, &model.true_heading_deg),
+                with_truth(&model.journey.heading_deg, &model.journey.true_heading_deg),
                 false,
             ),
         ],
@@ -299,11 +300,11 @@ fn travel_card(ui: &mut Ui, height: f32, model: &Model, state: &mut SequenceStat
 fn effort_card(ui: &mut Ui, height: f32, model: &Model, state: &mut SequenceState) {
     let palette = theme::palette(ui);
     let counts = vec![
-        curve(words::SEEN, palette.text_dim, &model.features),
-        curve(words::MATCHED, palette.accent, &model.matches),
-        curve(words::AGREEING, palette.good, &model.inliers),
+        curve(words::SEEN, palette.text_dim, &model.journey.features),
+        curve(words::MATCHED, palette.accent, &model.journey.matches),
+        curve(words::AGREEING, palette.good, &model.journey.inliers),
     ];
-    let times = vec![curve(words::MOTION_TIME, palette.accent, &model.motion_ms)];
+    let times = vec![curve(words::MOTION_TIME, palette.accent, &model.journey.motion_ms)];
     two_curves(
         ui,
         height,
@@ -328,14 +329,14 @@ fn two_curves(
     state: &mut SequenceState,
     plotted: [Plotted<'_>; 2],
 ) {
-    let current_s = model.times_s.get(state.player.frame_idx).copied();
+    let current_s = model.journey.times_s.get(state.player.frame_idx).copied();
     let clicked = widgets::card_with_height(
         ui,
         title,
         height,
         |_| {},
         |ui| {
-            if model.times_s.is_empty() {
+            if model.journey.times_s.is_empty() {
                 widgets::nothing(ui, words::NO_WAY);
                 return None;
             }
@@ -349,7 +350,7 @@ fn two_curves(
                         y_title,
                         decimals,
                         curves,
-                        lost_s: &model.lost_s,
+                        lost_s: &model.journey.lost_s,
                         current_s,
                         is_from_zero,
                         has_legend: idx == 0,
@@ -361,7 +362,7 @@ fn two_curves(
             })
         },
     );
-    if let Some(frame_idx) = clicked.and_then(|time_s| model.frame_at(time_s)) {
+    if let Some(frame_idx) = clicked.and_then(|time_s| model.journey.frame_at(time_s)) {
         state.player.go_to(frame_idx);
     }
 }

@@ -5,6 +5,7 @@ use egui_plot::MarkerShape;
 
 use crate::geometry::Vec3;
 use crate::report::figure::{Orbit, round_step};
+use crate::report::figure::model::Ways;
 use crate::text::sequence as words;
 use crate::ui::charts::{self, Chart, Extent, LegendEntry, LegendGlyph, marker};
 use crate::ui::eye::{self, Eye};
@@ -17,19 +18,6 @@ pub(super) struct CameraPose {
     pub at_m: Vec3,
     /// Right, down and forward.
     pub axes: [Vec3; 3],
-}
-
-/// What is drawn. Both ways begin in the first camera's frame: x right, y down, z forward, m.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Ways {
-    /// The stretches of the way that was tracked.
-    pub tracked: Vec<Vec<Vec3>>,
-    /// The true way, where it is known.
-    pub truth: Vec<Vec3>,
-    /// Each frame's number with its place, to be clicked.
-    pub frames: Vec<(usize, Vec3)>,
-    /// The camera at the frame in sight.
-    pub camera: Option<CameraPose>,
 }
 
 /// From where the way is seen at first.
@@ -62,7 +50,7 @@ fn legend(ui: &mut Ui, ways: &Ways) {
 }
 
 /// Shows the plan in the space available; answers the frame that was clicked.
-pub(super) fn plan(ui: &mut Ui, ways: &Ways, is_fitted: &mut bool) -> Option<usize> {
+pub(super) fn plan(ui: &mut Ui, ways: &Ways, camera: Option<&CameraPose>, is_fitted: &mut bool) -> Option<usize> {
     legend(ui, ways);
     let mut extent = Extent::NOTHING;
     for [x, y] in ways.tracked.iter().flatten().chain(&ways.truth).map(|point| in_plan(*point)) {
@@ -82,7 +70,7 @@ pub(super) fn plan(ui: &mut Ui, ways: &Ways, is_fitted: &mut bool) -> Option<usi
         canvas.at(x, y)
     };
     paint_ways(ui, &canvas.painter, ways, &at);
-    if let Some(camera) = &ways.camera {
+    if let Some(camera) = camera {
         paint_camera(ui, &canvas.painter, camera, &at, f64::from(CAMERA_SIZE / canvas.scale().max(1e-6)));
     }
     let hovered = canvas.hovered(ways.frames.iter().map(|(number, point)| ((*number, *point), in_plan(*point))));
@@ -98,7 +86,7 @@ pub(super) fn plan(ui: &mut Ui, ways: &Ways, is_fitted: &mut bool) -> Option<usi
 const CAMERA_SIZE: f32 = 22.0;
 
 /// Shows the way in space; answers the frame that was clicked.
-pub(super) fn space(ui: &mut Ui, ways: &Ways, eye: &mut Eye) -> Option<usize> {
+pub(super) fn space(ui: &mut Ui, ways: &Ways, camera: Option<&CameraPose>, eye: &mut Eye) -> Option<usize> {
     legend(ui, ways);
     let place = ui.available_rect_before_wrap();
     let response = ui.interact(place, ui.scope_id().with("way in space"), Sense::click_and_drag());
@@ -110,7 +98,7 @@ pub(super) fn space(ui: &mut Ui, ways: &Ways, eye: &mut Eye) -> Option<usize> {
     paint_floor(&painter, &view, palette.text_dim);
     let at = |point: Vec3| view.at(upright(point));
     paint_ways(ui, &painter, ways, &at);
-    if let Some(camera) = &ways.camera {
+    if let Some(camera) = camera {
         paint_camera(ui, &painter, camera, &at, f64::from(CAMERA_SIZE) / view.points_a_m);
     }
     // The first camera's axes.
