@@ -4,6 +4,8 @@
 //! at `m_C = K_C R (M − C)` (eq. 3), both by the pinhole model m = K R (M − C) (eq. 1 and 2). So a pixel of the depth image
 //! falls on `m_C = K_C (R K_D⁻¹ m_D + t)`, t = −R C (eq. 5). R and t are our `color_from_depth`.
 
+use pulp::{Arch, WithSimd};
+
 use super::camera::{DepthImage, Intrinsics, RgbdCamera};
 
 /// A depth pixel covers a little more than its own size: on slanted surfaces neighbours fall farther apart.
@@ -25,8 +27,9 @@ pub fn aligned(depth: &DepthImage, camera: &RgbdCamera) -> DepthImage {
     let projection = Projection::of(camera);
     let mut spots = Spots::new(depth.width() as usize);
     let width = depth.width().max(1) as usize;
-    for (row, line) in (0_u16..).zip(depth.as_raw().chunks_exact(width)) {
-        projection.project(f32::from(row), line, &mut spots);
+    let arch = Arch::new();
+    for (row, depths) in (0_u16..).zip(depth.as_raw().chunks_exact(width)) {
+        arch.dispatch(Line { projection: &projection, row: f32::from(row), depths, spots: &mut spots });
         spots.draw(&mut nearest);
     }
     for value in nearest.iter_mut() {
@@ -72,38 +75,58 @@ impl Projection {
             color: *color,
         }
     }
+}
 
-    /// Where the pixels of a row fall.
-    fn project(&self, row: f32, line: &[u16], spots: &mut Spots) {
-        let [bx, by, bz] = [0, 1, 2].map(|axis| self.at_row_0[axis] + row * self.of_row[axis]);
-        let [sx, sy, sz] = self.shift;
-        let [hx, hy] = self.half_size;
+/// A row of the depth image, to be projected: compiled for the wide registers of newer processors as well and the better
+/// version picked at run time, with the same bits.
+struct Line<'a> {
+    projection: &'a Projection,
+    row: f32,
+    depths: &'a [u16],
+    spots: &'a mut Spots,
+}
+
+impl WithSimd for Line<'_> {
+    type Output = ();
+
+    #[expect(clippy::inline_always, reason = "must be compiled inside the function for the wide registers")]
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _simd: S) {
+        let Projection { of_column, at_row_0, of_row, shift, half_size, color } = self.projection;
+        let [bx, by, bz] = [0, 1, 2].map(|axis| at_row_0[axis] + self.row * of_row[axis]);
+        let [sx, sy, sz] = *shift;
+        let [hx, hy] = *half_size;
+        let (width, height) = (color.width.cast_signed(), color.height.cast_signed());
         #[expect(clippy::cast_precision_loss, reason = "sides are below 8192 pixels")]
-        let [last_x, last_y] = [self.color.width as f32, self.color.height as f32];
+        let [last_x, last_y] = [color.width as f32, color.height as f32];
         // What falls outside is kept just outside, where no pixel is covered and the rounding still holds.
         let within = |value: f32, last: f32| {
             let value = if value < last + 1.0 { value } else { last + 1.0 };
             if value > -2.0 { value } else { -2.0 }
         };
         // Slices of one length, so that several pixels are computed at once.
-        let num = line.len();
-        let [ax, ay, az] = [0, 1, 2].map(|axis| &self.of_column[axis][..num]);
-        let Spots { z: spot_z, left, right, top, bottom } = spots;
-        let (spot_z, left, right) = (&mut spot_z[..num], &mut left[..num], &mut right[..num]);
-        let (top, bottom) = (&mut top[..num], &mut bottom[..num]);
+        let num = self.depths.len();
+        let [ax, ay, az] = [0, 1, 2].map(|axis| &of_column[axis][..num]);
+        let Spots { z: spot_z, first, across, down } = self.spots;
+        let (spot_z, first) = (&mut spot_z[..num], &mut first[..num]);
+        let (across, down) = (&mut across[..num], &mut down[..num]);
         for idx in 0..num {
-            let d = f32::from(line[idx]);
+            let d = f32::from(self.depths[idx]);
             let (x, y, z) = (d * (ax[idx] + bx) + sx, d * (ay[idx] + by) + sy, d * (az[idx] + bz) + sz);
             let per_z = 1.0 / z;
             let (u, v, scale) = (x * per_z, y * per_z, d * per_z);
             let (half_u, half_v) = (hx * scale, hy * scale);
-            // Of no depth, or behind the camera, no pixel is covered.
-            let is_seen = d > 0.0 && z > 0.0;
-            spot_z[idx] = rounded(if is_seen { within(z, 65_535.0) } else { 0.0 });
-            left[idx] = rounded(within(u - half_u, last_x) + 0.499_99);
-            right[idx] = rounded(within(u + half_u, last_x) - 0.499_99);
-            top[idx] = rounded(within(v - half_v, last_y) + 0.499_99);
-            bottom[idx] = rounded(within(v + half_v, last_y) - 0.499_99);
+            let left = rounded(within(u - half_u, last_x) + 0.499_99).max(0);
+            let right = rounded(within(u + half_u, last_x) - 0.499_99).min(width - 1);
+            let top = rounded(within(v - half_v, last_y) + 0.499_99).max(0);
+            let bottom = rounded(within(v + half_v, last_y) - 0.499_99).min(height - 1);
+            let units = rounded(within(z, 65_535.0));
+            // Of no depth, behind the camera, or beyond every camera's range, no pixel is covered.
+            let is_seen = d > 0.0 && units > 0 && units < i32::from(NOTHING);
+            spot_z[idx] = units;
+            first[idx] = top * width + left;
+            across[idx] = if is_seen { right - left } else { -1 };
+            down[idx] = bottom - top;
         }
     }
 }
@@ -113,38 +136,44 @@ fn rounded(value: f32) -> i32 {
     (value + ROUNDER).to_bits().cast_signed() - ROUNDER.to_bits().cast_signed()
 }
 
-/// The colour pixels that the depth pixels of a row cover, ends included, and their depth there.
+/// The colour pixels that the depth pixels of a row cover, and their depth there.
 struct Spots {
     z: Vec<i32>,
-    left: Vec<i32>,
-    right: Vec<i32>,
-    top: Vec<i32>,
-    bottom: Vec<i32>,
+    /// The upper left pixel, counted row by row.
+    first: Vec<i32>,
+    /// Columns to the last one; negative where no pixel is covered.
+    across: Vec<i32>,
+    /// Rows to the last one; negative where no pixel is covered.
+    down: Vec<i32>,
 }
 
 impl Spots {
     fn new(width: usize) -> Self {
         let none = || vec![0; width];
-        Self { z: none(), left: none(), right: none(), top: none(), bottom: none() }
+        Self { z: none(), first: none(), across: none(), down: none() }
     }
 
     /// Keeps the nearest at every pixel.
     fn draw(&self, nearest: &mut DepthImage) {
-        let (width, height) = (nearest.width().cast_signed(), nearest.height().cast_signed());
+        let width = nearest.width() as usize;
         let pixels: &mut [u16] = nearest;
-        let columns = self.left.iter().zip(&self.right);
-        let rows = self.top.iter().zip(&self.bottom);
-        for ((z, (left, right)), (top, bottom)) in self.z.iter().zip(columns).zip(rows) {
-            // 65535 stands for "nothing yet" and is beyond every camera's range.
-            let Some(z) = u16::try_from(*z).ok().filter(|z| (1..NOTHING).contains(z)) else { continue };
-            let (left, right) = ((*left).max(0), (*right).min(width - 1));
-            for row in (*top).max(0)..=(*bottom).min(height - 1) {
-                for column in left..=right {
-                    let at = (row * width + column).unsigned_abs() as usize;
-                    if let Some(pixel) = pixels.get_mut(at) {
-                        *pixel = z.min(*pixel);
-                    }
+        let sizes = self.across.iter().zip(&self.down);
+        for ((z, first), (across, down)) in self.z.iter().zip(&self.first).zip(sizes) {
+            #[expect(clippy::cast_possible_truncation, reason = "of what is covered it is below 65535")]
+            let (z, first) = (z.cast_unsigned() as u16, first.cast_unsigned() as usize);
+            let mut keep = |at: usize| {
+                if let Some(pixel) = pixels.get_mut(at) {
+                    *pixel = z.min(*pixel);
                 }
+            };
+            // Mostly it is one pixel, where both cameras have about the same.
+            if across | down == 0 {
+                keep(first);
+                continue;
+            }
+            let (Ok(across), Ok(down)) = (usize::try_from(*across), usize::try_from(*down)) else { continue };
+            for row in 0..=down {
+                (0..=across).for_each(|column| keep(first + row * width + column));
             }
         }
     }
