@@ -39,7 +39,7 @@ impl Default for OursOptions {
             corners: CornerSearch { most: 320, min_distance: 12.0, min_strength: 1.0 },
             noise: DepthNoise::KINECT,
             most_bits: 64,
-            least_part: 0.6,
+            least_part: 0.8,
             most_turn_rad: 0.2,
         }
     }

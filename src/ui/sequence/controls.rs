@@ -42,7 +42,8 @@ pub(super) fn card(
                     player.show(ui, &model.journey.times_s, width);
                     ui.with_layout(Layout::right_to_left(Align::Center), |ui| options(ui, context, typed));
                 });
-                let sentence = frame_sentence(context.workbench.sequence(), sequence, &model.journey.times_s, player.frame_idx);
+                let sentence =
+                    frame_sentence(context.workbench.sequence(), sequence, &model.journey.times_s, player.frame_idx);
                 ui.add(Label::new(&sentence).truncate());
                 ui.horizontal(|ui| summary(ui, context.workbench, sequence, model));
             });

@@ -285,7 +285,13 @@ fn travel_card(ui: &mut Ui, height: f32, model: &Model, state: &mut SequenceStat
         model,
         state,
         [
-            ("sequence distance", words::DISTANCE_AXIS, 3, with_truth(&model.journey.distance_m, &model.journey.true_distance_m), true),
+            (
+                "sequence distance",
+                words::DISTANCE_AXIS,
+                3,
+                with_truth(&model.journey.distance_m, &model.journey.true_distance_m),
+                true,
+            ),
             (
                 "sequence heading",
                 words::HEADING_AXIS,

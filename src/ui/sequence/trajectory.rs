@@ -4,8 +4,8 @@ use egui::{Align2, Color32, Id, Painter, Pos2, Rect, Role, Sense, Shape, Stroke,
 use egui_plot::MarkerShape;
 
 use crate::geometry::Vec3;
-use crate::report::figure::{Orbit, round_step};
 use crate::report::figure::model::Ways;
+use crate::report::figure::{Orbit, round_step};
 use crate::text::sequence as words;
 use crate::ui::charts::{self, Chart, Extent, LegendEntry, LegendGlyph, marker};
 use crate::ui::eye::{self, Eye};
