@@ -6,7 +6,7 @@
 use std::hint::black_box;
 use std::time::Duration;
 
-use criterion::{Criterion, criterion_group, criterion_main};
+use criterion::{Criterion, SamplingMode, criterion_group, criterion_main};
 use handeye::odometry::align::aligned;
 use handeye::odometry::view::View;
 use handeye::odometry::{Estimator, Odometry, OdometryOptions, RgbdFrame, TimedPose, Tracking, evaluate};
@@ -66,7 +66,8 @@ fn frames(criterion: &mut Criterion) {
     accuracy(&recordings);
     let (room, frames, _) = &recordings[1];
     let mut group = criterion.benchmark_group("640 x 480");
-    group.sample_size(20).measurement_time(Duration::from_secs(5));
+    // Samples of few runs each: where the machine is busy, the least of them still tells the time.
+    group.sampling_mode(SamplingMode::Flat).sample_size(100).measurement_time(Duration::from_millis(300));
     group.bench_function("depth to colour", |bencher| {
         bencher.iter(|| aligned(black_box(&frames[0].depth), &room.camera));
     });

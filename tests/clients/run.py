@@ -7,6 +7,8 @@ that others wrote.
 Makes a virtual environment in FOLDER (a temporary one if none is named), installs the clients of requirements.txt there,
 starts `handeye cell` for each protocol, runs checks.py, and runs tool_frames.py, ros_bags.py and evo_check.py. Ends with 0 if all is well, 1 if a check failed or a cell did not
 start, and 3 with lines "skipped: ..." if something could not be checked: no clients, or no free ports.
+
+compare_motion.py is run by itself: it takes minutes, large packages of its own, and a release build.
 """
 
 import os
