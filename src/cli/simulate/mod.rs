@@ -627,7 +627,7 @@ mod tests {
         let session = simulated_session(&args).expect("valid");
         assert_eq!(session.target, Target::Rgbd { sequence: "x-sequence".to_owned() });
         assert_eq!(session.name, "arm");
-        assert!(session.unknown.contains_key("truth"));
+        assert!(session.truth.is_some());
     }
 
     #[test]

@@ -109,6 +109,14 @@ pub struct Row {
     pub used: Option<UsedStation>,
 }
 
+impl Row {
+    /// Whether it is one of the session's stations, which can be left out; a stretch of a way is none.
+    #[must_use]
+    pub const fn is_station(&self) -> bool {
+        self.translation_mm.is_some()
+    }
+}
+
 /// A method's table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MethodTable {

@@ -32,6 +32,10 @@ pub const PAPER_LAYOUT: &str = "paper layout";
 pub const MATRICES: &str = "matrices";
 /// Head of the first column.
 pub const STATION: &str = "station";
+/// Head of a column: a part of a camera's way.
+pub const STRETCH: &str = "stretch";
+/// Head of columns: where a stretch puts the scene.
+pub const SCENE_IN_BASE: &str = "scene in base / mm";
 /// Head over the coordinates of a method's target in the base.
 #[must_use]
 pub const fn in_base(method: Method) -> &'static str {
@@ -49,8 +53,9 @@ pub const fn in_base(method: Method) -> &'static str {
 pub const OFF_EDGE: &str = "off edge / mm";
 /// Head over the errors from the first station used.
 #[must_use]
-pub fn error_from_first(label: &str) -> String {
-    format!("error from station {label} / mm")
+pub fn error_from_first(label: &str, is_station: bool) -> String {
+    let what = if is_station { "station " } else { "" };
+    format!("error from {what}{label} / mm")
 }
 
 /// Head over the errors about the mean.

@@ -137,8 +137,11 @@ fn plain(
 ) {
     let widths = widths(ui, table.is_of_plate);
     let mut row = RowCells::new(ui, theme::ROW_HEIGHT);
-    row.head(widths[0], text::STATION, Align2::LEFT_CENTER);
-    row.head(widths[1..4].iter().sum(), text::in_base(method), Align2::CENTER_CENTER);
+    let is_way = table.rows.iter().any(|row| !row.is_station());
+    let [rows, in_base] =
+        if is_way { [text::STRETCH, text::SCENE_IN_BASE] } else { [text::STATION, text::in_base(method)] };
+    row.head(widths[0], rows, Align2::LEFT_CENTER);
+    row.head(widths[1..4].iter().sum(), in_base, Align2::CENTER_CENTER);
     row.head(widths[4..7].iter().sum(), &reference_head(reference, table), Align2::CENTER_CENTER);
     row.head(widths[7], text::ERROR_SIZE, Align2::RIGHT_CENTER);
     let mut row = RowCells::new(ui, theme::ROW_HEIGHT - 2.0);
@@ -163,7 +166,10 @@ fn reference_head(reference: ErrorReference, table: &MethodTable) -> String {
         return text::OFF_EDGE.to_owned();
     }
     match (reference, table.used().next()) {
-        (ErrorReference::FirstStation, Some((row_idx, _))) => text::error_from_first(&table.rows[row_idx].label),
+        (ErrorReference::FirstStation, Some((row_idx, _))) => {
+            let row = &table.rows[row_idx];
+            text::error_from_first(&row.label, row.is_station())
+        }
         _ => text::ERROR_FROM_MEAN.to_owned(),
     }
 }
@@ -208,16 +214,20 @@ pub fn station_cell(
         ui.painter().rect_filled(marker, 0.0, palette.accent);
     }
     let box_rect = Rect::from_min_size(cell.min + vec2(6.0, 0.0), vec2(20.0, cell.height()));
-    let mut is_enabled = station.is_enabled;
-    let mut inside = ui.new_child(UiBuilder::new().max_rect(box_rect).layout(Layout::left_to_right(Align::Center)));
-    inside.spacing_mut().interact_size = vec2(18.0, 18.0);
-    let tick = inside.add(Checkbox::without_text(&mut is_enabled));
-    let name = text::use_station(&station.label, method);
-    tick.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, is_enabled, &name));
-    if tick.changed() {
-        commands.push(Command::SetStationEnabled { station_idx, enabled: is_enabled });
+    let mut label_rect = cell.with_min_x(box_rect.left());
+    if station.is_station() {
+        let mut is_enabled = station.is_enabled;
+        let layout = Layout::left_to_right(Align::Center);
+        let mut inside = ui.new_child(UiBuilder::new().max_rect(box_rect).layout(layout));
+        inside.spacing_mut().interact_size = vec2(18.0, 18.0);
+        let tick = inside.add(Checkbox::without_text(&mut is_enabled));
+        let name = text::use_station(&station.label, method);
+        tick.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, is_enabled, &name));
+        if tick.changed() {
+            commands.push(Command::SetStationEnabled { station_idx, enabled: is_enabled });
+        }
+        label_rect = cell.with_min_x(box_rect.right() + 2.0);
     }
-    let label_rect = cell.with_min_x(box_rect.right() + 2.0);
     let response = ui.interact(label_rect, ui.scope_id().with(("station", method, station_idx)), Sense::click());
     let name = text::station_row(&station.label, method);
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, selection.station_idx == station_idx, &name));

@@ -33,8 +33,11 @@ pub fn show(ui: &mut Ui, height: f32, view: &View<'_>, context: &mut PanelContex
     let right = |ui: &mut Ui| {
         ui.spacing_mut().interact_size.y = 22.0;
         ui.spacing_mut().button_padding = vec2(8.0, 2.0);
-        let button = Button::new(words::TRY_READINGS).selected(shows_readings);
-        is_asked_for_readings = ui.add(button).on_hover_text(words::TRY_READINGS_HINT).clicked();
+        // Whole poses of a target say by themselves what is inverted.
+        if !matches!(view.session.target, Target::Pose { .. } | Target::Rgbd { .. }) {
+            let button = Button::new(words::TRY_READINGS).selected(shows_readings);
+            is_asked_for_readings = ui.add(button).on_hover_text(words::TRY_READINGS_HINT).clicked();
+        }
         if view.is_out_of_date() {
             ui.label(theme::dim(ui, words::OUT_OF_DATE).color(theme::palette(ui).warn));
         }
