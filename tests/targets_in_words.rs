@@ -27,8 +27,12 @@ fn window_with(file_name: &str) -> Harness<'static, Window> {
         .with_os(egui::os::OperatingSystem::Nix)
         .build_eframe(|creation| Window::new(creation, Start::default()));
     settle(&mut harness);
-    harness.get_by_label(&start_words::open_sample(start_words::sample_lesson(file_name).0)).click();
+    let card = start_words::open_sample(start_words::sample_lesson(file_name).0);
+    harness.get_by_label(&card).scroll_to_me();
     settle(&mut harness);
+    harness.get_by_label(&card).click();
+    settle(&mut harness);
+    assert!(harness.state().shell().workbench().document().is_some(), "{file_name} is open");
     harness
 }
 

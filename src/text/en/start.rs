@@ -7,7 +7,7 @@ use crate::text::digits;
 /// Heading of the start page.
 pub const TITLE: &str = "Calibrate a laser profiler or a camera on a robot";
 /// What this is about, in a sentence.
-pub const LEAD: &str = "A ball, a right-angled plate or a pin's tip, a handful of robot poses and the profiles seen from them give the sensor's place on the flange; a camera needs the poses of a board, or its images alone. Open a session of yours, or learn with a sample.";
+pub const LEAD: &str = "A ball, plate, pin or board seen from a handful of robot poses gives the sensor's place on the flange; an RGB-D camera needs its images only. Open a session, or learn with a sample.";
 /// Heading.
 pub const SAMPLES: &str = "Samples";
 /// Heading.

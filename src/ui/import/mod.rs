@@ -28,7 +28,7 @@ pub fn pairs(ui: &mut Ui, actions: &mut Vec<Action>) {
         if ui.button(words::PAIRS).on_hover_text(words::PAIRS_COLUMNS).clicked() {
             actions.push(Action::Import);
         }
-        ui.label(theme::dim(ui, words::PASTE_KEY).small());
+        ui.add(Label::new(theme::dim(ui, words::PASTE_KEY).small()).extend());
     });
 }
 
@@ -60,6 +60,6 @@ pub fn entries(ui: &mut Ui, actions: &mut Vec<Action>) {
                 actions.push(action);
             }
         }
-        ui.label(theme::dim(ui, words::PASTE_KEY).small());
+        ui.add(Label::new(theme::dim(ui, words::PASTE_KEY).small()).extend());
     });
 }
