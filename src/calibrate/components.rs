@@ -16,7 +16,7 @@ const PROPORTION_STD: f64 = 2.2;
 /// Scoring settles in four to ten steps, more where a component vanishes.
 const MAX_ITERATIONS: usize = 40;
 /// Changes below this are the end: far below how well variances can be known.
-const SETTLED: f64 = 1e-4;
+const SETTLED: f64 = 1e-6;
 /// Step (of a variance's logarithm) over which differences are taken.
 const DIFFERENCE: f64 = 1e-3;
 /// A variance falls or grows by no more than a factor of ten a step, …

@@ -14,8 +14,14 @@ use crate::calibrate::{Mount, SolveError};
 use crate::geometry::so3::hat;
 use crate::geometry::{Mat3, Rigid, Vec3, se3, so3};
 
-/// A step that is not to be believed has this variance more, rad² or mm²: it breaks the chain.
-const UNKNOWN: f64 = 1e9;
+/// The variance, rad² or mm², of a step about which nothing is known, as over a gap; and what a step that is not to be believed
+/// has more. It breaks the chain.
+pub const UNKNOWN_STEP: f64 = 1e9;
+
+/// Whether anything is known of a step with this covariance.
+pub(super) fn is_known(covariance: &Matrix6<f64>) -> bool {
+    covariance[(0, 0)] < 0.5 * UNKNOWN_STEP
+}
 
 /// A pose of the track: of the flange (inverted for a fixed sensor) and of the camera, and what the step that leads here may be
 /// off by.
@@ -106,7 +112,7 @@ impl TrackNoise {
         let (rotation, translation) = (self.rotation_factor.sqrt(), self.translation_factor.sqrt());
         let scale = se3::join(Vec3::repeat(rotation), Vec3::repeat(translation));
         let own = pose.covariance.component_mul(&(scale * scale.transpose()));
-        if pose.is_believed { own } else { own + Matrix6::identity() * UNKNOWN }
+        if pose.is_believed { own } else { own + Matrix6::identity() * UNKNOWN_STEP }
     }
 
     /// Of the robot's pose, carried to the sensor's axes: the same in all directions, it only gains the lever.

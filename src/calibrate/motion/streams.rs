@@ -13,7 +13,7 @@ use crate::calibrate::{
 use crate::geometry::{Base, Flange, Rigid, Sensor, Transform, World, se3};
 
 use super::found::TimeOffset;
-use super::steps::{Track, TrackPose, usual_covariance};
+use super::steps::{Track, TrackPose, is_known, usual_covariance};
 use super::time_offset::{self, Timed, at, coarse, interval_s, longest_gap_s};
 use super::track::Settled;
 
@@ -25,7 +25,7 @@ pub struct CameraPose {
     /// Where the camera was: in the frame of its first pose, or in that of a target.
     pub world_from_sensor: Transform<World, Sensor>,
     /// What the step from the pose before may be off by: covariance of (rotation, translation) along the camera's axes here,
-    /// rad² and mm². `None` where nothing is known; it is found from the scatter then.
+    /// rad² and mm², [`UNKNOWN_STEP`] over a gap. `None` where nothing is stated; it is found from the scatter then.
     pub step_covariance: Option<Matrix6<f64>>,
 }
 
@@ -88,7 +88,7 @@ pub fn solve_streams(problem: &StreamProblem) -> Result<Solution, SolveError> {
     }
     let start_s = coarse(&flange, &camera).unwrap_or(0.0);
     let unknown = Offset { clocks: TimeOffset { offset_s: start_s, std_s: None }, change: Vector6::zeros() };
-    streams.solve(Some(streams.offset(start_s)?.unwrap_or(unknown)))
+    streams.solve(Some(streams.offset(start_s).unwrap_or(unknown)))
 }
 
 /// By how much the clocks differ, and what hangs on it.
@@ -115,19 +115,20 @@ enum Rough {
 
 impl Streams<'_> {
     /// The offset near a start, if the data tell it.
-    fn offset(&self, start_s: f64) -> Result<Option<Offset>, SolveError> {
+    fn offset(&self, start_s: f64) -> Option<Offset> {
         let mut start_s = start_s;
         let mut reach_s = time_offset::reach_s(self.flange);
         let mut latest = None;
         for _ in 0..MAX_ROUNDS {
-            let rough = self.rough(start_s, reach_s)?;
+            // Poses near the ends take no part here; without them there may be too few.
+            let Ok(rough) = self.rough(start_s, reach_s) else { break };
             let minimum = |offset_s: f64| self.minimum(&rough, offset_s);
             let found = time_offset::refined(start_s, reach_s, |offset_s| Some(minimum(offset_s)?.0));
             let is_far = |std_s: f64| reach_s > REACH_STDS * std_s || reach_s > LONGEST_REACH_S;
             match found {
                 Some((offset_s, std_s)) if is_far(std_s) => {
                     let around = [-reach_s, reach_s].map(|step_s| minimum(offset_s + step_s));
-                    let [Some((_, before)), Some((_, after))] = around else { return Ok(None) };
+                    let [Some((_, before)), Some((_, after))] = around else { return None };
                     let change = se3::log(&(before.inverse() * after)) / (2.0 * reach_s);
                     latest = Some(Offset { clocks: TimeOffset { offset_s, std_s: Some(std_s) }, change });
                     // Weights and lost steps are those of the start.
@@ -143,7 +144,7 @@ impl Streams<'_> {
                 }
             }
         }
-        Ok(latest)
+        latest
     }
 
     /// The camera's poses for which the flange's is known, the flange inverted for a fixed sensor; and their places in the
@@ -152,9 +153,15 @@ impl Streams<'_> {
     /// None within `margin_s` of an end of the flange's stream are taken.
     fn poses(&self, offset_s: f64, margin_s: f64) -> (Vec<TrackPose>, Vec<usize>) {
         let (mut poses, mut places) = (Vec::new(), Vec::new());
-        // What was lost between poses that were left out is summed over them.
+        // What was lost between poses that were left out is summed over them, along the axes of the last.
         let mut since = Matrix6::zeros();
+        let mut before: Option<Rigid> = None;
         for (place, camera) in self.problem.camera.iter().enumerate() {
+            let here = *camera.world_from_sensor.rigid();
+            if let Some(before) = before.replace(here) {
+                let by_before = se3::adjoint(&(here.inverse() * before));
+                since = by_before * since * by_before.transpose();
+            }
             since += camera.step_covariance.unwrap_or_else(usual_covariance);
             let time_s = camera.time_s + offset_s;
             let is_inside = |shift_s: f64| at(self.flange, time_s + shift_s, self.longest_gap_s).is_some();
@@ -162,15 +169,16 @@ impl Streams<'_> {
             if margin_s > 0.0 && !(is_inside(margin_s) && is_inside(-margin_s)) {
                 continue;
             }
+            let covariance = std::mem::replace(&mut since, Matrix6::zeros());
             poses.push(TrackPose {
                 time_s: camera.time_s,
                 base_from_flange: match self.problem.mount {
                     Mount::OnFlange => flange,
                     Mount::Fixed => flange.inverse(),
                 },
-                world_from_sensor: *camera.world_from_sensor.rigid(),
-                covariance: std::mem::replace(&mut since, Matrix6::zeros()),
-                is_believed: true,
+                world_from_sensor: here,
+                covariance,
+                is_believed: is_known(&covariance),
             });
             places.push(place);
         }

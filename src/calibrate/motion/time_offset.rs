@@ -21,11 +21,14 @@ const LEAST_CORRELATION: f64 = 0.5;
 /// Offsets tried; beyond that the step grows.
 const MAX_TRIALS: usize = 20_000;
 
-/// The pose of a stream at a time, on the cubic curve through its neighbours; `None` outside of the stream or in a gap of more
-/// than `longest_gap_s`.
+/// Over a shorter time a robot's way is as good as the twist between its ends, s.
+const SHORT_INTERVAL_S: f64 = 0.04;
+
+/// The pose of a stream at a time, between its neighbours; `None` outside of the stream or in a gap of more than `longest_gap_s`.
 ///
-/// Along the twist that joins the neighbours a robot that speeds up or turns would be off by an eighth of its acceleration times
-/// the square of the interval: a millimetre where poses are logged ten times a second.
+/// Neighbours that are near in time are joined by a twist. Along that a robot that speeds up or turns is off by an eighth of its
+/// acceleration times the square of the interval, a millimetre where poses are logged ten times a second: there it is the cubic
+/// curve through four poses, whose noise comes in more than that of two.
 #[must_use]
 pub fn at(stream: &[Timed], time_s: f64, longest_gap_s: f64) -> Option<Rigid> {
     let after = stream.partition_point(|(time, _)| *time < time_s);
@@ -40,6 +43,10 @@ pub fn at(stream: &[Timed], time_s: f64, longest_gap_s: f64) -> Option<Rigid> {
         return None;
     }
     let whole = se3::log(&(start.inverse() * end));
+    let share = (time_s - start_s) / interval_s;
+    if interval_s < SHORT_INTERVAL_S {
+        return Some(start * se3::exp(&(whole * share)));
+    }
     let neighbour = |place: Option<usize>| {
         let (other_s, other) = stream.get(place?)?;
         let away_s = (other_s - start_s).abs().min((other_s - end_s).abs());
@@ -57,7 +64,6 @@ pub fn at(stream: &[Timed], time_s: f64, longest_gap_s: f64) -> Option<Rigid> {
     let at_start = speed((*start_s, start), whole, neighbour(before.checked_sub(1)));
     let at_end = speed((*end_s, end), whole, neighbour(Some(after + 1)));
     let at_end = se3::right_jacobian(&whole).lu().solve(&at_end)?;
-    let share = (time_s - start_s) / interval_s;
     let [square, cube] = [share.powi(2), share.powi(3)];
     let twist =
         at_start * (cube - 2.0 * square + share) + whole * (3.0 * square - 2.0 * cube) + at_end * (cube - square);

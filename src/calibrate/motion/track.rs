@@ -17,7 +17,7 @@ use super::found::{MotionFound, MotionPose, Tracked};
 use super::measured::{LEVER_MM, MIN_POSES};
 use super::pose::{Information, MotionState, PosePair};
 use super::start;
-use super::steps::{Track, TrackNoise, TrackPose};
+use super::steps::{Track, TrackNoise, TrackPose, is_known};
 use super::stretches::TrackReduced;
 
 /// The distance for which the headline is stated where nothing is known of the scene, mm.
@@ -71,7 +71,7 @@ impl Settled {
             let squares = Track { poses: &poses, noise, mount }.squares(&sensor);
             let mut is_other = false;
             for (pose, (_, error)) in poses[1..].iter_mut().zip(&squares) {
-                let is_believed = square_alone(pose, error, &noise) <= LOST;
+                let is_believed = is_known(&pose.covariance) && square_alone(pose, error, &noise) <= LOST;
                 is_other |= pose.is_believed != is_believed;
                 pose.is_believed = is_believed;
             }
@@ -96,7 +96,8 @@ impl Settled {
         let squares = Track { poses: &poses, noise, mount }.squares(&sensor);
         let num_independent = squares.len() / Track { poses: &poses, noise, mount }.steps_in_row();
         let tracked = tracked(&poses, &noise, &squares);
-        let step_std = |part: usize| stats::rms(poses[1..].iter().map(|pose| noise_std(pose, &noise, part)));
+        let believed = || poses[1..].iter().filter(|pose| pose.is_believed);
+        let step_std = |part: usize| stats::rms(believed().map(|pose| noise_std(pose, &noise, part)));
         let (target_rotation_std_rad, target_translation_std_mm) = (step_std(0), step_std(3));
         // The noise is judged by rows of steps.
         #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 steps")]

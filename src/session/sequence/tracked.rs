@@ -5,15 +5,13 @@ use std::sync::Arc;
 
 use nalgebra::Matrix6;
 
-use crate::calibrate::motion::{CameraPose, StreamProblem, Weighing};
+use crate::calibrate::motion::{CameraPose, StreamProblem, UNKNOWN_STEP, Weighing};
 use crate::odometry::{Evaluation, OdometryOptions, Tracking, Travel};
 use crate::watch::{Cancelled, Watch};
 
 use super::super::Session;
 use super::{FrameRecord, Sequence, SequenceRun};
 
-/// Over a gap nothing is known of the motion, rad² and mm².
-const UNKNOWN: f64 = 1e9;
 
 /// A sequence with what is known of each of its frames.
 #[derive(Clone, Debug, PartialEq)]
@@ -115,7 +113,7 @@ fn camera_poses(records: &[FrameRecord]) -> Vec<CameraPose> {
         .enumerate()
         .map(|(place, (time_s, world_from_sensor, step_covariance))| {
             // Nothing is known of the motion over a gap; no step leads to the first pose.
-            let over_gap = || Matrix6::identity() * UNKNOWN;
+            let over_gap = || Matrix6::identity() * UNKNOWN_STEP;
             let step_covariance = (place > 0).then(|| step_covariance.unwrap_or_else(over_gap));
             CameraPose { time_s, world_from_sensor, step_covariance }
         })
