@@ -73,6 +73,7 @@ fn frame_of(file: &Path, args: &ToolFrameArgs) -> Result<ToolFrame, Refusal> {
             parent: Parent::of(calibration.mount.unwrap_or(Mount::OnFlange)),
             name,
             number: args.number,
+            is_camera: false,
             std_mm_deg: None,
         });
     }

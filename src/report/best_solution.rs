@@ -1,7 +1,7 @@
 //! The calibration that a session stands for where nobody says which one is meant.
 
 use crate::calibrate::{Solution, best_available};
-use crate::session::{self, Measured, Session};
+use crate::session::{self, Measured, NothingToSolve, Session};
 use crate::text::workpiece::ONLY_A_WORKPIECE;
 use crate::watch::{Cancelled, Watch};
 
@@ -17,7 +17,15 @@ pub fn best_solution(
     let own = session::problem(session, measured);
     let further = (0..session.further.len()).map(|idx| session::problem_of(session, measured, idx));
     let mut reason = ONLY_A_WORKPIECE.to_owned();
-    for problem in std::iter::once(own).chain(further).flatten() {
+    for problem in std::iter::once(own).chain(further) {
+        let problem = match problem {
+            Ok(problem) => problem,
+            Err(NothingToSolve::Workpiece) => continue,
+            Err(refusal) => {
+                reason = refusal.to_string();
+                continue;
+            }
+        };
         let results = problem.solve_all(problem.methods(), watch)?;
         if let Some(solution) = best_available(&results) {
             return Ok(Ok(solution.clone()));

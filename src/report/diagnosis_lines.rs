@@ -61,6 +61,8 @@ pub fn accuracy_lines(session: &Session, solution: &Solution, examination: &Exam
             .max_by(|a, b| moves(*a).total_cmp(&moves(*b)))
             .map(|idx| &validation.influence[idx])
     });
+    // What single poses on the way scatter by is the robot's and the camera's.
+    let is_tracked = solution.motion.as_ref().is_some_and(|motion| motion.tracked.is_some());
     [
         validation.and_then(|validation| validation.split_half.as_ref()).map(words::split_half_line),
         validation.and_then(|validation| validation.normality.as_ref()).map(words::normality_line),
@@ -71,7 +73,7 @@ pub fn accuracy_lines(session: &Session, solution: &Solution, examination: &Exam
         (Method::BALL.contains(&solution.method) && solution.change_by_radius.norm() > 0.0)
             .then(|| words::radius_line(solution)),
         solution.radius.as_ref().map(words::estimated_radius_line),
-        solution.noise.as_ref().map(|noise| words::noise_line(noise, &session.robot)),
+        solution.noise.as_ref().filter(|_| !is_tracked).map(|noise| words::noise_line(noise, &session.robot)),
     ]
     .into_iter()
     .flatten()

@@ -1,6 +1,6 @@
 //! From a session with its results to what they are worth on other data; the command line and the window share it.
 
-use crate::calibrate::{MethodResult, Problem};
+use crate::calibrate::{MethodResult, Problem, best_available};
 use crate::session::model::UnknownFields;
 use crate::session::{Edit, FurtherTarget, Known, Measured, Session, Target, problem_of};
 use crate::text::verify::{own_target_name, target_name_from_file};
@@ -24,6 +24,23 @@ pub fn solved_further(verification: &Verification) -> Vec<SolvedTarget> {
     further.map(|target| SolvedTarget { problem: target.problem.clone(), results: target.results.clone() }).collect()
 }
 
+/// Streams with the camera's times by the robot's clock, as the best solution has it: what calibrations are held against must
+/// not hang on a rough guess.
+fn with_clocks_set(problem: &Problem, results: &[MethodResult]) -> Problem {
+    let offset_s = best_available(results)
+        .and_then(|solution| solution.motion.as_ref()?.time_offset)
+        .map(|clocks| clocks.offset_s);
+    match (problem, offset_s) {
+        (Problem::Streams(streams), Some(offset_s)) => {
+            let mut streams = streams.clone();
+            streams.find_offset = false;
+            streams.camera.iter_mut().for_each(|pose| pose.time_s += offset_s);
+            Problem::Streams(streams)
+        }
+        _ => problem.clone(),
+    }
+}
+
 /// The targets of a session with what the methods make of each: its own first, then the further ones, unless they are among
 /// the `known`. A target that nothing is computed from, such as a workpiece, is none of them.
 ///
@@ -45,7 +62,7 @@ pub fn target_cases(
         .map(|(problem, results)| TargetCase {
             name: own_target_name(&session.target).to_owned(),
             further_idx: None,
-            problem: problem.clone(),
+            problem: with_clocks_set(problem, results),
             results: results.to_vec(),
             touched_mm: touched_mm(&session.target, &session.known),
         })

@@ -1,7 +1,7 @@
 //! From a session's profiles to arcs and edge points, and from these to the problem that the methods solve. Profiles of a scan
 //! are kept as they are: nothing is looked for in them.
 
-use std::path::Path;
+use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
 use thiserror::Error;
@@ -12,7 +12,7 @@ use crate::geometry::{Profile, Transform};
 use crate::odometry::OdometryOptions;
 use crate::watch::{Cancelled, Watch};
 
-use super::sequence::{Sequence, SequenceError, TrackedSequence};
+use super::sequence::{FrameError, Sequence, SequenceError, TrackedSequence};
 use super::{FurtherTarget, Reading, Session, Station, Target};
 
 /// Why a session is none for the ball methods.
@@ -31,10 +31,10 @@ pub enum NothingToSolve {
     /// A workpiece is measured with a calibration, not for one.
     #[error("the session's target is a workpiece: it shows what a calibration is worth, but none is computed from it")]
     Workpiece,
-    /// A sequence lies beside its session's file.
+    /// A sequence lies beside its session's file, and there is none, or nobody has looked at the sequence.
     #[error(
-        "the session names the folder {folder} of an RGB-D sequence relative to its file, but has no file yet; \
-         save it beside the folder"
+        "the RGB-D sequence in the folder {folder} was not tracked; it is looked for beside the session's file, so a \
+         session without one has to be saved there first"
     )]
     SequenceWithoutPlace {
         /// The folder's name.
@@ -43,9 +43,15 @@ pub enum NothingToSolve {
     /// The sequence cannot be read.
     #[error(transparent)]
     Sequence(#[from] SequenceError),
+    /// No frame has a pose.
+    #[error("no frame of the sequence has a pose{}", first_reason.as_ref().map_or_else(String::new, |reason| format!(": {reason}")))]
+    NothingTracked {
+        /// What is wrong with the first frame that could not be read.
+        first_reason: Option<FrameError>,
+    },
     /// The camera's motion is known, but not the robot's.
     #[error(
-        "the sequence has no flange.txt with the robot's poses: its motion is known, but not how the camera is mounted"
+        "the sequence has no flange.txt with two poses of the robot or more: the camera's motion is known, but not how it is mounted"
     )]
     NoFlange,
 }
@@ -147,9 +153,10 @@ impl Measured {
     /// What is known of the sequence that a target names; none of another one.
     fn sequence_of(&self, target: &Target) -> Option<Result<Arc<TrackedSequence>, SequenceError>> {
         let Target::Rgbd { sequence: folder } = target else { return None };
+        let named: PathBuf = Path::new(folder).components().filter(|part| *part != Component::CurDir).collect();
         self.sequence
             .clone()
-            .filter(|known| known.as_ref().map_or(true, |tracked| tracked.sequence.folder.ends_with(folder)))
+            .filter(|known| known.as_ref().map_or(true, |tracked| tracked.sequence.folder.ends_with(&named)))
     }
 
     /// The motion that the camera of an RGB-D session saw.
@@ -280,6 +287,10 @@ pub fn problem(session: &Session, measured: &Measured) -> Result<Problem, Nothin
         return match &measured.sequence {
             None => Err(NothingToSolve::SequenceWithoutPlace { folder: sequence.clone() }),
             Some(Err(error)) => Err(error.clone().into()),
+            Some(Ok(tracked)) if tracked.counts().tracked == 0 => {
+                let broken = tracked.records.iter().find_map(|record| record.outcome.as_ref().err());
+                Err(NothingToSolve::NothingTracked { first_reason: broken.cloned() })
+            }
             Some(Ok(tracked)) => tracked.streams(session).map(Problem::Streams).ok_or(NothingToSolve::NoFlange),
         };
     }
@@ -312,9 +323,12 @@ pub fn ball_problem(session: &Session, measured: &Measured) -> Result<BallProble
         Ok(Problem::Motion(_)) => Err(NotABallSession { kind: "a pose" }),
         Err(NothingToSolve::Workpiece) => Err(NotABallSession { kind: "a workpiece" }),
         Ok(Problem::Streams(_))
-        | Err(NothingToSolve::SequenceWithoutPlace { .. } | NothingToSolve::Sequence(_) | NothingToSolve::NoFlange) => {
-            Err(NotABallSession { kind: "an RGB-D sequence" })
-        }
+        | Err(
+            NothingToSolve::SequenceWithoutPlace { .. }
+            | NothingToSolve::Sequence(_)
+            | NothingToSolve::NothingTracked { .. }
+            | NothingToSolve::NoFlange,
+        ) => Err(NotABallSession { kind: "an RGB-D sequence" }),
     }
 }
 

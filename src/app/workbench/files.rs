@@ -310,10 +310,18 @@ impl Workbench {
         }
         // Another document may be on the bench by now; its file is another.
         if let Some(document) = self.document_of(&save) {
+            let folder_before = document.path.as_deref().and_then(Path::parent).map(Path::to_owned);
             document.note_saved(save.session);
             document.path = Some(save.path);
             (document.stamp, document.is_read_only, document.on_disk) = (Some(stamp), false, OnDisk::Same);
+            let folder = document.path.as_deref().and_then(Path::parent);
+            // The sequence is that beside the file.
+            let has_other_sequence =
+                matches!(document.session.target, Target::Rgbd { .. }) && folder != folder_before.as_deref();
             self.keep_copy();
+            if has_other_sequence {
+                self.start_solving();
+            }
         }
     }
 

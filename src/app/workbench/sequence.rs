@@ -158,6 +158,12 @@ impl Workbench {
                 self.look_at_wanted();
             }
             SequenceCommand::Track(options) => {
+                if self.sequence.options != options {
+                    // They are of the way as it was tracked before.
+                    self.report.clear();
+                    self.bootstrap.clear();
+                    self.comparison.clear();
+                }
                 self.sequence.options = options;
                 self.start_solving();
             }

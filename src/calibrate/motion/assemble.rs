@@ -190,6 +190,8 @@ impl Found<'_> {
             && let Some((factor, std)) = scale(&reduced.poses, &reduced.state, doubt)
             && (factor - 1.0).abs() > SCALE_OFF
             && (factor - 1.0).abs() > SCALE_AT_STDS * std
+            // A size that may as well be none tells of another fault.
+            && factor > SCALE_AT_STDS * std
         {
             self.warnings.push(Warning::TargetScale { factor, std });
         }

@@ -32,8 +32,8 @@ pub use found::{Answered, ClosedFormAnswer, MotionData, MotionFound, MotionPose,
 pub use measured::MIN_POSES;
 pub use pose::{MotionState, PosePair};
 pub use reduced::{MotionReduced, MotionRefit};
-pub use steps::{TrackNoise, TrackPose};
 pub use steps::UNKNOWN_STEP;
+pub use steps::{TrackNoise, TrackPose};
 pub use streams::{CameraPose, StreamProblem, Weighing, solve_streams};
 pub use stretches::{TrackReduced, TrackRefit};
 

@@ -25,6 +25,8 @@ pub struct ToolFrame {
     pub flange_from_sensor: Transform<Flange, Sensor>,
     /// What it is fixed to.
     pub parent: Parent,
+    /// Whether the sensor is a camera that sees whole poses, and no profiler.
+    pub is_camera: bool,
     /// What it is called: letters, digits and underscores, beginning with a letter.
     pub name: Name,
     /// The number of the tool in the controller.
@@ -41,6 +43,7 @@ impl ToolFrame {
         Self {
             flange_from_sensor: solution.flange_from_sensor,
             parent: Parent::of(solution.mount),
+            is_camera: solution.motion.is_some(),
             name,
             number,
             std_mm_deg: known.map(|known| [known.translation_std_mm, known.rotation_std_rad.map(f64::to_degrees)]),
@@ -211,7 +214,7 @@ impl Format {
         let mut text = String::new();
         let std = frame.std_mm_deg.map(|std| std.map(|std| std.amax()));
         let is_carried = frame.parent == Parent::Flange;
-        for line in heading(is_carried, self.convention, self.units, self.remark, std) {
+        for line in heading(is_carried, frame.is_camera, self.convention, self.units, self.remark, std) {
             match self.comment {
                 Comment::Line(mark) => text.extend([mark, " ", &line, "\n"]),
                 Comment::Between(open, close) => text.extend([open, " ", &line, " ", close, "\n"]),

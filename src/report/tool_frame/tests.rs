@@ -13,6 +13,7 @@ fn frame(translation_mm: [f64; 3], rotation_vector: [f64; 3]) -> ToolFrame {
         parent: Parent::Flange,
         name: Name::from_words("scan"),
         number: 2,
+        is_camera: false,
         std_mm_deg: None,
     }
 }

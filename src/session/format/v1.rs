@@ -70,13 +70,13 @@ enum Kind {
 pub(super) fn session(root: &Object<'_>, mended: &mut Mended) -> Result<Session, Refusal> {
     let mut of_target = UnknownFields::new();
     let (target, known) = target(root, KINDS, &mut of_target)?;
+    let stations = stations(root, &target, mended)?;
     let truth = match root.optional("truth") {
         Some(cursor) if is_truth_ours(&cursor, &target) => Some(truth(&cursor, &target, mended)?),
         _ => None,
     };
     let mut unknown = root.unknown(&names::session(&target, truth.is_some()));
     unknown.extend(of_target);
-    let stations = stations(root, &target, mended)?;
     Ok(Session {
         name: root.text_or_empty("name")?,
         notes: root.text_or_empty("notes")?,

@@ -12,7 +12,6 @@ use crate::watch::{Cancelled, Watch};
 use super::super::Session;
 use super::{FrameRecord, Sequence, SequenceRun};
 
-
 /// A sequence with what is known of each of its frames.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrackedSequence {
@@ -82,11 +81,11 @@ impl TrackedSequence {
         last.map_or_else(Travel::default, |summary| summary.travel)
     }
 
-    /// The hand-eye problem, where the robot's poses are known; the session says what the robot is like and where the camera is
+    /// The hand-eye problem, where two poses of the robot or more are known; the session says what the robot is like and where the camera is
     /// mounted.
     #[must_use]
     pub fn streams(&self, session: &Session) -> Option<StreamProblem> {
-        let flange = self.sequence.flange.as_ref()?;
+        let flange = self.sequence.flange.as_ref().filter(|poses| poses.len() > 1)?;
         Some(StreamProblem {
             mount: session.mount,
             noise: session.robot.noise(),

@@ -18,6 +18,10 @@ pub const LEFT_OUT: &str = "Left out by you";
 pub const UNFOLD_ALL: &str = "Unfold all";
 /// Button.
 pub const FOLD_ALL: &str = "Fold all";
+/// The table of a sequence.
+pub const NO_POSES_OF_SEQUENCE: &str = "Nothing to edit here";
+/// Where the poses of a sequence are.
+pub const POSES_OF_SEQUENCE: &str = "The robot's poses stand in the folder of the sequence, in flange.txt.";
 /// A session without stations.
 pub const EMPTY: &str = "No stations yet";
 /// How a session without stations gets some.

@@ -8,6 +8,7 @@ use crate::text::digits;
 #[must_use]
 pub fn heading(
     is_carried: bool,
+    is_camera: bool,
     convention: Option<&PoseConvention>,
     units: &str,
     remark: Option<&str>,
@@ -23,7 +24,11 @@ pub fn heading(
         Some(convention) => format!("{units}; R = {}", convention.formula),
         None => units.to_owned(),
     });
-    lines.push("sensor: laser plane y = 0, x across the line, z along the range axis".to_owned());
+    lines.push(if is_camera {
+        "sensor: the camera's frame, usually x right, y down, z along the optical axis".to_owned()
+    } else {
+        "sensor: laser plane y = 0, x across the line, z along the range axis".to_owned()
+    });
     if let Some([translation_mm, rotation_deg]) = std {
         lines.push(format!(
             "standard deviation: {} mm, {} deg at most along an axis",

@@ -132,7 +132,7 @@ pub const fn warning_remedy(warning: &Warning) -> &'static str {
             "Measure the station again: with robot and target at rest, and both read at one time."
         }
         Warning::StreamInverted { .. } => {
-            "Set the mounting (sensor on the flange, or fixed) to the other one, or have the poses as base_from_flange and sensor_from_target."
+            "If the sensor is mounted the other way, set the mounting to that; if not, invert the list that is given the wrong way round: poses are base_from_flange and sensor_from_target. Both would fit: only you know where the sensor is."
         }
         Warning::TargetScale { .. } => {
             "Measure the target with a caliper, and give its true size to the program that finds its pose."

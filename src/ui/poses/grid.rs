@@ -7,8 +7,8 @@ use egui::{
 };
 
 use crate::app::{Command, Document};
-use crate::session::Row;
 use crate::session::table::Column;
+use crate::session::{Row, Target};
 use crate::text::conventions::poses_title;
 use crate::text::poses as words;
 use crate::ui::theme::{self, Palette, ROW_HEIGHT};
@@ -193,8 +193,15 @@ impl Grid<'_> {
         }
         if num_rows == 0 {
             let at = geometry.viewport.center() - vec2(0.0, ROW_HEIGHT);
-            ui.painter().text(at, Align2::CENTER_BOTTOM, words::EMPTY, ink.body.clone(), ink.palette.text);
-            let hint = words::NO_STATIONS.to_owned();
+            let is_sequence =
+                sheet.view.session.as_ref().is_some_and(|session| matches!(session.target, Target::Rgbd { .. }));
+            let [empty, hint] = if is_sequence {
+                [words::NO_POSES_OF_SEQUENCE, words::POSES_OF_SEQUENCE]
+            } else {
+                [words::EMPTY, words::NO_STATIONS]
+            };
+            ui.painter().text(at, Align2::CENTER_BOTTOM, empty, ink.body.clone(), ink.palette.text);
+            let hint = hint.to_owned();
             // The check column stands over the others, so there is less room than the grid is wide.
             let clip = ui.clip_rect();
             let width = 2.0 * ((clip.right() - at.x).min(at.x - clip.left()) - theme::GAP).max(0.0);

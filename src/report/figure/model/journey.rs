@@ -2,6 +2,7 @@
 
 use crate::geometry::{Sensor, Transform, Vec3, World};
 use crate::odometry::Tracking;
+use crate::odometry::evaluation::nearest_in_time;
 use crate::odometry::trajectory::Odometer;
 use crate::session::sequence::{FrameRecord, Sequence};
 
@@ -68,19 +69,21 @@ impl Journey {
     fn take(&mut self, idx: usize, record: &FrameRecord, time_s: f64) {
         self.times_s.push(time_s);
         let summary = record.outcome.as_ref().ok();
+        // A frame that the period leaves out is no gap.
+        if summary.is_some_and(|summary| summary.tracking == Tracking::LeftOut) {
+            return;
+        }
         let pose = summary.and_then(|summary| summary.world_from_sensor);
         let travel = summary.filter(|_| pose.is_some()).map(|summary| summary.travel);
         let motion = summary.and_then(|summary| match &summary.tracking {
             Tracking::Tracked(motion) => Some(motion),
             _ => None,
         });
-        let is_left_out = summary.is_some_and(|summary| summary.tracking == Tracking::LeftOut);
         let or_none = |value: Option<f64>| (time_s, value);
         self.distance_m.push(or_none(travel.map(|travel| travel.distance_mm / 1000.0)));
         self.heading_deg.push(or_none(travel.map(|travel| travel.turn_rad.to_degrees())));
-        self.motion_ms.push(or_none(summary.filter(|_| !is_left_out).map(|_| record.motion_ms)));
-        let looked_at = summary.filter(|_| !is_left_out);
-        self.features.push(or_none(looked_at.map(|summary| count(summary.num_features))));
+        self.motion_ms.push(or_none(summary.map(|_| record.motion_ms)));
+        self.features.push(or_none(summary.map(|summary| count(summary.num_features))));
         self.matches.push(or_none(motion.map(|motion| count(motion.num_matches))));
         self.inliers.push(or_none(motion.map(|motion| count(motion.num_inliers))));
         let Some(pose) = pose else { return };
@@ -98,8 +101,10 @@ impl Journey {
     fn take_truth(&mut self, sequence: &Sequence, first_s: f64) {
         let Some(truth) = &sequence.ground_truth else { return };
         let last_s = sequence.frames.last().map_or(first_s, |frame| frame.time_s);
-        // The run begins at the true pose of the first frame, so that both ways begin in the same place.
-        let Some(first_from_world) = self.first_from_world else { return };
+        // Both ways are seen from the camera at the first frame with a pose, each from its own.
+        let Some((first_idx, _)) = self.ways.frames.first() else { return };
+        let Some(first_true) = nearest_in_time(truth, first_s + self.times_s[*first_idx]) else { return };
+        let first_from_world = first_true.world_from_sensor.inverse();
         let mut odometer = Odometer::default();
         for pose in truth.iter().filter(|pose| (first_s - SLACK_S..=last_s + SLACK_S).contains(&pose.time_s)) {
             let travel = odometer.advance(&pose.world_from_sensor, false);
@@ -136,6 +141,9 @@ struct Lost {
 
 impl Lost {
     fn take(&mut self, record: &FrameRecord, time_s: f64) {
+        if record.outcome.as_ref().is_ok_and(|summary| summary.tracking == Tracking::LeftOut) {
+            return;
+        }
         let is_lost = record.outcome.as_ref().map_or(true, |summary| {
             matches!(summary.tracking, Tracking::Lost(_) | Tracking::Started { is_after_gap: true })
         });

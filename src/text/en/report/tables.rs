@@ -20,7 +20,7 @@ pub const LEFT_OUT_GROUP: &str = "left out / mm";
 #[must_use]
 pub const fn maximum_in_sample(target: &Target) -> &'static str {
     match target {
-        Target::RightAnglePlate => MAXIMUM,
+        Target::RightAnglePlate | Target::Rgbd { .. } => MAXIMUM,
         _ => "max. axis",
     }
 }
@@ -77,8 +77,7 @@ pub const LEFT_OVER: &str = "residual, RMS";
 /// Head of a column.
 pub const TRANSLATION: &str = "translation";
 /// Below the table.
-pub const CLOSED_FORMS_NOTE: &str =
-    "The refined answer begins at the best of them. Residual: of the target's place and orientation about their means.";
+pub const CLOSED_FORMS_NOTE: &str = "Residual: of the place and orientation of what was seen, about their means.";
 /// Title of a table.
 pub const DIFFERENCES: &str = "Differences of the calibrations, second relative to first";
 /// Head of a column.
@@ -181,7 +180,9 @@ pub fn distances_line(target: &Target, rms_mm: &str, max_mm: &str) -> String {
     let from = match target {
         Target::RightAnglePlate => "of the points from their edges",
         Target::Point => "of the tips, 3D",
-        _ => "of the balls, 3D",
+        Target::Pose { .. } => "of the target's origins, 3D",
+        Target::Rgbd { .. } => "that the steps of the camera are off by, RMS of a stretch, 3D",
+        Target::Ball { .. } | Target::Workpiece => "of the balls, 3D",
     };
     format!("RMS {rms_mm} mm, maximum {max_mm} mm (distances {from})")
 }
