@@ -118,11 +118,9 @@ impl<const R: usize, const U: usize> Components<R, U> {
     /// [`SolveError::Undetermined`] if the points leave an unknown free.
     pub fn fit(&self, start: Vector3<f64>) -> Result<Found, SolveError> {
         let mut log_factors = start;
-        let mut covariance = Matrix3::zeros();
         for _ in 0..MAX_ITERATIONS {
             let (score, information) = self.scoring(&log_factors)?;
-            covariance = inverse_of_open(&information);
-            let step = covariance * score;
+            let step = inverse_of_open(&information) * score;
             let before = log_factors;
             for idx in (0..NUM_COMPONENTS).filter(|idx| self.is_open[*idx]) {
                 let stepped = before[idx] + step[idx].clamp(-MAX_STEP, MAX_STEP);
@@ -132,7 +130,9 @@ impl<const R: usize, const U: usize> Components<R, U> {
                 break;
             }
         }
-        Ok(Found { log_factors, covariance })
+        // Where a component vanishes the last step still changes what is known of it.
+        let (_, information) = self.scoring(&log_factors)?;
+        Ok(Found { log_factors, covariance: inverse_of_open(&information) })
     }
 
     /// How the likelihood rises with the logarithms, and the information about them.

@@ -11,7 +11,7 @@ use crate::text::diagnosis_panel as panel_words;
 use crate::text::import as import_words;
 use crate::text::report_panel as report_words;
 use crate::text::shell as words;
-use crate::text::start::captures as captures_text;
+use crate::text::start::{board_poses, captures as captures_text};
 
 use super::actions::Action;
 use super::capture::{self, model::may_be_moving};
@@ -125,7 +125,10 @@ fn progress_or_summary(ui: &mut Ui, workbench: &Workbench, commands: &mut Vec<Co
         let stations = || document.session.stations.iter().filter(|station| station.enabled);
         let captures = || stations().flat_map(|station| &station.captures);
         let num_points = captures().filter(|capture| matches!(capture.reading, Reading::Point(_))).count();
-        let captures = captures_text(captures().count() - num_points, num_points);
+        let captures = match document.session.target {
+            Target::Pose { .. } => board_poses(captures().count()),
+            _ => captures_text(captures().count() - num_points, num_points),
+        };
         if document.session.stations.is_empty() {
             return;
         }

@@ -366,8 +366,8 @@ pub fn verdict_scale(good_mm: f64, usable_mm: f64) -> String {
 /// Title of the card of closed forms.
 pub const CLOSED_FORMS: &str = "Published closed forms";
 /// What it is for.
-pub const CLOSED_FORMS_HINT: &str = "on the same data; the refined answer begins at the best of them";
+pub const CLOSED_FORMS_HINT: &str = "on the same data; residual: RMS";
 /// Its columns.
-pub const CLOSED_FORM_COLUMNS: [&str; 4] = ["off the refined / mm", "/ °", "residual RMS / mm", "/ °"];
+pub const CLOSED_FORM_COLUMNS: [&str; 4] = ["from refined / mm", "/ °", "residual / mm", "/ °"];
 /// Where a closed form has no answer.
 pub const CLOSED_FORM_SINGULAR: &str = "its equations are singular here";

@@ -120,11 +120,22 @@ fn refused(ui: &mut Ui, reason: &str) {
     });
 }
 
+/// The same where a row is a stretch, named by its seconds.
+const PARTS_OF_WAY: [f32; 8] = [78.0, 67.0, 62.0, 67.0, 54.0, 54.0, 54.0, 46.0];
+
 /// Widths of the columns, so that they fill the card.
-fn widths(ui: &Ui, is_of_plate: bool) -> [f32; 8] {
-    let parts = if is_of_plate { PARTS_OF_PLATE } else { PARTS };
+fn widths(ui: &Ui, table: &MethodTable) -> [f32; 8] {
+    let parts = match table {
+        MethodTable { is_of_plate: true, .. } => PARTS_OF_PLATE,
+        _ if is_way(table) => PARTS_OF_WAY,
+        _ => PARTS,
+    };
     let scale = ui.available_width() / parts.iter().sum::<f32>();
     parts.map(|part| part * scale)
+}
+
+fn is_way(table: &MethodTable) -> bool {
+    table.rows.iter().any(|row| !row.is_station())
 }
 
 fn plain(
@@ -135,11 +146,10 @@ fn plain(
     selection: &mut Selection,
     commands: &mut Vec<Command>,
 ) {
-    let widths = widths(ui, table.is_of_plate);
+    let widths = widths(ui, table);
     let mut row = RowCells::new(ui, theme::ROW_HEIGHT);
-    let is_way = table.rows.iter().any(|row| !row.is_station());
     let [rows, in_base] =
-        if is_way { [text::STRETCH, text::SCENE_IN_BASE] } else { [text::STATION, text::in_base(method)] };
+        if is_way(table) { [text::STRETCH, text::SCENE_IN_BASE] } else { [text::STATION, text::in_base(method)] };
     row.head(widths[0], rows, Align2::LEFT_CENTER);
     row.head(widths[1..4].iter().sum(), in_base, Align2::CENTER_CENTER);
     row.head(widths[4..7].iter().sum(), &reference_head(reference, table), Align2::CENTER_CENTER);

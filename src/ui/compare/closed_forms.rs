@@ -10,7 +10,7 @@ use crate::ui::{theme, widgets};
 use super::table::RowCells;
 
 /// Parts of a row: name, distance and angle from the refined answer, what is left over of place and angle.
-const PARTS: [f32; 5] = [220.0, 130.0, 130.0, 130.0, 130.0];
+const PARTS: [f32; 5] = [232.0, 130.0, 100.0, 138.0, 100.0];
 
 /// Shows the table.
 pub fn show(ui: &mut Ui, answers: &[ClosedFormAnswer]) {
