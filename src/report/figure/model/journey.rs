@@ -136,7 +136,7 @@ const fn count(number: usize) -> f64 {
 struct Lost {
     stretches_s: Vec<[f64; 2]>,
     before_s: Option<f64>,
-    was_lost: bool,
+    is_open: bool,
 }
 
 impl Lost {
@@ -148,12 +148,12 @@ impl Lost {
             matches!(summary.tracking, Tracking::Lost(_) | Tracking::Started { is_after_gap: true })
         });
         if is_lost {
-            match self.stretches_s.last_mut().filter(|_| self.was_lost) {
+            match self.stretches_s.last_mut().filter(|_| self.is_open) {
                 Some(stretch) => stretch[1] = time_s,
                 None => self.stretches_s.push([self.before_s.unwrap_or(time_s), time_s]),
             }
         }
-        self.was_lost = is_lost;
+        self.is_open = is_lost;
         self.before_s = Some(time_s);
     }
 }

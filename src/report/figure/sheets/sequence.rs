@@ -29,6 +29,11 @@ fn legend(has_truth: bool) -> Vec<Entry> {
     legend
 }
 
+/// Titles of the axes across and up, and where a point lies on them.
+type View<'a> = (&'a str, &'a str, &'a dyn Fn(&Vec3) -> [f64; 2]);
+/// Values over time, and how their line is drawn.
+type Curve<'a> = (&'a Values, Rgb, Dash);
+
 /// From above, and from the side: the first camera's right, forward and up.
 fn way(journey: &Journey) -> Figure {
     let ways = &journey.ways;
@@ -38,7 +43,7 @@ fn way(journey: &Journey) -> Figure {
     let areas = sheet.legend_over_columns(&legend);
     let from_above = |point: &Vec3| [point.x, point.z];
     let from_the_side = |point: &Vec3| [point.z, -point.y];
-    let views: [(&str, &str, &dyn Fn(&Vec3) -> [f64; 2]); 2] =
+    let views: [View<'_>; 2] =
         [(words::RIGHT_AXIS, words::FORWARD_AXIS, &from_above), (words::FORWARD_AXIS, words::UP_AXIS, &from_the_side)];
     for ((x_title, y_title, at), area) in views.into_iter().zip(areas) {
         let mut extent = Extent::NOTHING;
@@ -69,7 +74,7 @@ fn over_time(journey: &Journey) -> Figure {
     let mut legend = legend(has_truth);
     legend.push(Entry::new(Sign::Line(Dash::Dotted), palette::TEXT_DIM, words::POINTS_MATCHED));
     legend.push(Entry::new(Sign::Line(Dash::Solid), palette::INLIER, words::POINTS_AGREEING));
-    let curves: [(&str, Vec<(&Values, Rgb, Dash)>); 3] = [
+    let curves: [(&str, Vec<Curve<'_>>); 3] = [
         (
             words::DISTANCE_AXIS,
             vec![
