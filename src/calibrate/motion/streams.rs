@@ -25,7 +25,7 @@ pub struct CameraPose {
     /// Where the camera was: in the frame of its first pose, or in that of a target.
     pub world_from_sensor: Transform<World, Sensor>,
     /// What the step from the pose before may be off by: covariance of (rotation, translation) along the camera's axes here,
-    /// rad² and mm², [`UNKNOWN_STEP`] over a gap. `None` where nothing is stated; it is found from the scatter then.
+    /// rad² and mm², [`super::UNKNOWN_STEP`] over a gap. `None` where nothing is stated; it is found from the scatter then.
     pub step_covariance: Option<Matrix6<f64>>,
 }
 
